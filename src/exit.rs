@@ -61,6 +61,7 @@ pub fn of(error: &RunError) -> u8 {
         RunError::NoDragImpulse { .. } => PEER,
         RunError::Reacting { cause, .. } => of(cause),
         RunError::Closure { .. }
+        | RunError::Lost { .. }
         | RunError::ClosureInGas { .. }
         | RunError::Unphysical { .. }
         | RunError::NotFinite(_)

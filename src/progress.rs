@@ -1,4 +1,4 @@
-//! The progress bar: process time, acceleration factor, time left.
+//! What is shown while a case is made ready and while it runs: process time, acceleration factor, time left.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -51,6 +51,20 @@ impl Progress {
             .set_message(format!("process time {now:.3} s  AF {factor:.0}"));
         self.drawn = Instant::now();
     }
+}
+
+/// Makes something of a case, and shows on standard error that it is read and its particles are placed, and for how long, where
+/// that is a terminal.
+pub fn preparing<T>(make: impl FnOnce() -> T) -> T {
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message("reading the case, placing its particles");
+    bar.enable_steady_tick(EVERY);
+    let made = make();
+    bar.finish_and_clear();
+    made
 }
 
 /// Takes the bar off the screen.

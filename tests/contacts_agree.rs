@@ -66,6 +66,7 @@ fn contacts(law: ContactLaw) -> Contacts {
         step: STEP,
         gravity: Vec3::zeros(),
         bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
+        lost: Default::default(),
         periodicity: Default::default(),
         materials: vec![
             Elastic {

@@ -141,7 +141,10 @@ fn check_and_prepare_say_what_a_script_is_and_where_it_does_not_go_with_the_case
     };
     let text = said(&["check", "case.toml"]);
     assert!(text.contains("those of `liggghts.template`"), "{text}");
-    assert!(!text.contains("not with LIGGGHTS"), "{text}");
+    assert!(
+        !text.contains("LIGGGHTS          not this case: "),
+        "{text}"
+    );
     said(&[
         "prepare",
         "case.toml",
@@ -167,7 +170,7 @@ fn check_and_prepare_say_what_a_script_is_and_where_it_does_not_go_with_the_case
     );
     case(folder.path(), &wrong);
     let text = said(&["check", "case.toml"]);
-    assert!(text.contains("not with LIGGGHTS"), "{text}");
+    assert!(text.contains("LIGGGHTS          not this case: "), "{text}");
     assert!(
         text.contains("gravity of the case is (0 0 -9.81) m/s²"),
         "{text}"

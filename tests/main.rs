@@ -31,6 +31,7 @@ mod installed_interface;
 mod isomers;
 mod laws;
 mod liggghts_script;
+mod lost_particles;
 mod measures;
 mod momentum_models;
 mod moving_beds;

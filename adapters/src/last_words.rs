@@ -129,8 +129,8 @@ const KEY: &str = "a dictionary lacks the key that the log names: of a template 
 const DIVERGED: &str = "OpenFOAM divided by zero or overflowed: the gas diverged; shorten `time.motion_window` or refine it where it flows fastest, see the \
                         Courant number that `calcine check` prints, and go on from the last checkpoint with --resume";
 const LOST: &str = "particles left LIGGGHTS' space between two searches for neighbours: the step is too long for the contacts, two particles began \
-                    inside each other, or a wall has a hole; see overlaps and step in `calcine check`, lower `motion.motion_step`, and go on from the \
-                    last checkpoint with --resume";
+                    inside each other, no wall closes the mesh there, or a wall has a hole; see walls, overlaps and step in `calcine check`, lower \
+                    `motion.motion_step`, and go on from the last checkpoint with --resume; motion.lost = \"take-out\" takes such particles out and goes on";
 const UNKNOWN: &str = "LIGGGHTS does not know a word of the script, which the log names: see the manual of LIGGGHTS-PUBLIC 3.8";
 const FULL: &str = "the disk is full: make room, and go on from the last checkpoint with --resume";
 

@@ -30,6 +30,8 @@ pub enum FindingKind {
     MassTransferVoidFraction,
     /// Reynolds number outside the range of the mass transfer law.
     MassTransferReynolds,
+    /// Particles that left the mesh and were taken out.
+    LostParticles,
     /// Gas comes back in through an outlet, in the state of the cell behind.
     Backflow,
     /// The gas' outer loop ended at its limit.
@@ -48,7 +50,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::GasTemperature,
         Self::MassFraction,
         Self::MachNumber,
@@ -60,6 +62,7 @@ impl FindingKind {
         Self::HeatTransferReynolds,
         Self::MassTransferVoidFraction,
         Self::MassTransferReynolds,
+        Self::LostParticles,
         Self::Backflow,
         Self::GasIterations,
         Self::TurbulenceSolver,
@@ -118,6 +121,12 @@ impl FindingKind {
                 "mass_transfer.reynolds",
                 "Reynolds numbers outside the range that the mass transfer law's source states",
                 "1",
+            ],
+            Self::LostParticles => [
+                "lost_particles",
+                "particles left the gas mesh and were taken out (motion.lost): no wall closes it there, a wall has a hole, or the \
+                 step is too long for the contacts, see walls, step and overlap in `calcine check`; speed",
+                "m/s",
             ],
             Self::Backflow => [
                 "backflow",
@@ -187,6 +196,13 @@ pub enum FindingPlace {
     Cell(Vec3),
     /// At the particle of this id.
     Particle(u64),
+    /// At the particle of this id, which left the mesh here, in m.
+    Left {
+        /// Its id.
+        id: u64,
+        /// Its centre in m.
+        at: Vec3,
+    },
 }
 
 /// Something that a committed window leaves outside a range, or unconverged.

@@ -123,6 +123,8 @@ pub struct Ledger {
     pub fed_and_discharged: [CarriedInventory; 2],
     /// What was left so far of particles that were used up, burnt for example, and taken out.
     pub used_up: CarriedInventory,
+    /// What particles carried so far that left the mesh and were taken out.
+    pub lost: CarriedInventory,
     /// Mass of each element of a gas mixture in kg, by its symbol.
     pub elements: Vec<(String, BalanceLine)>,
 }

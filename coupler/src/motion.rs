@@ -37,8 +37,10 @@ pub struct Contacts {
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Lower and upper corner of the space in which particles may be, in m; one that leaves it is
-    /// an error that names it.
+    /// an error that names it, unless such particles are taken out.
     pub bounds: (Vec3, Vec3),
+    /// What becomes of particles that leave.
+    pub lost: LostParticles,
     /// Directions in which this space repeats itself: what leaves through one plane comes in through the other.
     pub periodicity: Periodicity,
     /// Elastic constants of each material.
@@ -60,6 +62,21 @@ impl Contacts {
     pub fn pair(&self, a: usize, b: usize) -> &Pair {
         &self.pairs[a * self.materials.len() + b]
     }
+}
+
+/// Why particles leave, and what to do about it.
+pub const LOST_REMEDY: &str = "particles leave where no wall closes the gas mesh, through a hole in a wall, or because the step is too long or \
+                               the contacts are too soft for their speed: see walls, step and overlap in `calcine check`; \
+                               motion.lost = \"take-out\" takes them out and goes on";
+
+/// What becomes of particles whose centres leave the gas mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LostParticles {
+    /// They end the run.
+    #[default]
+    End,
+    /// The coordinator takes them out after the window in which they left; a part must not lose them before.
+    TakeOut,
 }
 
 /// Elastic constants of a material.

@@ -387,7 +387,7 @@ fn a_sphere_that_leaves_its_bounds_is_named_with_place_and_velocity() {
     let mut bed = Bed::new(contacts(1e-3), &[at(3, 0.1), at(8, 30.0)]);
     let text = bed.try_run(100).unwrap_err().to_string();
     assert!(
-        text.contains("particle 8 left its bounds at (0.8, 0, 1."),
+        text.contains("particle 8 left the box about the gas mesh at (0.8, 0, 1."),
         "{text}"
     );
     assert!(text.contains("velocity of (0, 0, 30) m/s"), "{text}");
@@ -396,7 +396,7 @@ fn a_sphere_that_leaves_its_bounds_is_named_with_place_and_velocity() {
         .err()
         .unwrap()
         .to_string();
-    assert!(text.contains("particle 4 left its bounds"), "{text}");
+    assert!(text.contains("particle 4 left the box"), "{text}");
 }
 
 #[test]

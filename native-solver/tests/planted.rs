@@ -243,6 +243,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         checkpoint: CheckpointPaths::new(results),
         free: Vec::new(),
         holds: Default::default(),
+        lost: Default::default(),
         gravity: Vec3::zeros(),
         feeds_and_outlets: Default::default(),
         substance: vec![0],

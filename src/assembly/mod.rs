@@ -18,7 +18,7 @@ pub use interior::{ModelFactory, chemistry};
 pub use pairing::{GasBackend, Pairing, ParticleBackend};
 pub use prepared::PreparedCase;
 pub use settings::{RunSettings, SolverStart, SolverStarts};
-pub use solvers::{check_own_script, native_parts, programs, write_inputs};
+pub use solvers::{check_for_liggghts, native_parts, programs, write_inputs};
 
 use crate::case::model::Case;
 

@@ -4,7 +4,7 @@ use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, ContactStepLimit, Plan};
 use calcine_coupler::feeds::{Feed, FeedsAndOutlets};
 use calcine_coupler::hold::Holds;
-use calcine_coupler::motion::Motion;
+use calcine_coupler::motion::{LostParticles, Motion};
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
 
@@ -49,6 +49,10 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
             .motion
             .as_ref()
             .map_or_else(Holds::default, |motion| motion.held.clone()),
+        lost: case
+            .motion
+            .as_ref()
+            .map_or_else(LostParticles::default, |motion| motion.lost),
         gravity: case.gas.gravity,
         feeds_and_outlets: feeds_and_outlets(case, prepared),
         substance: case.particles.iter().map(|one| one.material).collect(),

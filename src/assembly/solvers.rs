@@ -116,8 +116,8 @@ fn own_script(case: &Case) -> Result<Option<ScriptTemplate>, PartError> {
     })
 }
 
-/// What LIGGGHTS would not take of the user's own script, for `calcine check`.
-pub fn check_own_script(case: &Case, prepared: &PreparedCase) -> Result<(), PartError> {
+/// What LIGGGHTS would not take of the case or of the user's own script, for `calcine check`.
+pub fn check_for_liggghts(case: &Case, prepared: &PreparedCase) -> Result<(), PartError> {
     let template = own_script(case)?;
     let inputs = liggghts_inputs(
         case,
@@ -125,6 +125,7 @@ pub fn check_own_script(case: &Case, prepared: &PreparedCase) -> Result<(), Part
         template.as_ref(),
         case.liggghts.ranks.max(1),
     );
+    inputs.check()?;
     inputs.script().map(|_| ())
 }
 

@@ -24,6 +24,7 @@ pub fn check_report(
     mesh: &Mesh,
     setup: &ParticleSetup,
     packing: &BedPacking,
+    not_with_liggghts: Option<&str>,
 ) -> String {
     let (particles, void_fraction) = (setup.id.len(), packing.void_fraction);
     let cells = mesh.cells();
@@ -152,7 +153,7 @@ pub fn check_report(
             let _ = writeln!(text, "    {line}");
         }
     }
-    honoured(&mut text, case);
+    honoured(&mut text, case, not_with_liggghts);
     text
 }
 
@@ -243,7 +244,7 @@ fn diffusivity(case: &Case) -> String {
 }
 
 /// What each backend makes of the case.
-fn honoured(text: &mut String, case: &Case) {
+fn honoured(text: &mut String, case: &Case, not_with_liggghts: Option<&str>) {
     let _ = writeln!(text, "  backends:");
     let external = case.external_gas.as_ref().map(|_| "external gas");
     let names = ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"];
@@ -251,25 +252,27 @@ fn honoured(text: &mut String, case: &Case) {
     let particles = particles.map(|_| "external particles");
     for name in names.into_iter().chain(external).chain(particles) {
         let foam = openfoam(case);
-        let note = match name {
-            "OpenFOAM" => foam.as_str(),
-            "native gas" if case.openfoam.start.is_some() => {
+        let refused = not_with_liggghts.map(|reason| format!("not this case: {reason}"));
+        let note = match (name, &refused) {
+            ("LIGGGHTS", Some(refused)) => refused,
+            ("OpenFOAM", _) => foam.as_str(),
+            ("native gas", _) if case.openfoam.start.is_some() => {
                 "not its start: `openfoam.start` is the start of an OpenFOAM gas alone"
             }
-            "native gas" if case.openfoam.template.is_some() => {
+            ("native gas", _) if case.openfoam.template.is_some() => {
                 "every key but `openfoam.template`: what only the template states is left out"
             }
-            "LIGGGHTS" if case.liggghts.template.is_some() => {
+            ("LIGGGHTS", _) if case.liggghts.template.is_some() => {
                 "every key; contacts, walls and integration are those of `liggghts.template`, which restricts \
                  the case to these particles where they differ from the case's"
             }
-            "native particles" if case.liggghts.template.is_some() => {
+            ("native particles", _) if case.liggghts.template.is_some() => {
                 "every key but `liggghts.template`: what only the script states is left out"
             }
-            "external gas" => {
+            ("external gas", _) => {
                 "its own settings: of the case's gas it is told what the particles exchange, and must have the same mesh"
             }
-            "external particles" => {
+            ("external particles", _) => {
                 "their own settings: of the case they are given the particles at the start, and what the gas pushes"
             }
             _ => "every key",

@@ -1,6 +1,5 @@
 //! From the sections of a case to what a discrete element solver is told, and its time step.
 
-use calcine_adapters::liggghts::moving;
 use calcine_coupler::coordinator::LONGEST_STEP;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{
@@ -190,6 +189,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         step,
         gravity: case.gas.gravity,
         bounds: mesh.bounds().into(),
+        lost: motion.lost,
         periodicity: *mesh.periodicity(),
         materials: case.materials.iter().map(elastic).collect(),
         material_of: case.particles.iter().map(|one| one.material).collect(),
@@ -334,7 +334,7 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
     limits
 }
 
-/// What `calcine check` says of moving particles: step, times, and what no backend but some honours.
+/// What `calcine check` says of moving particles: step and times.
 pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String> {
     let (Told::Free(contacts), Some(motion)) = (&setup.motion, &case.motion) else {
         return None;
@@ -374,9 +374,6 @@ pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String>
     let speed = fastest(case, mesh, setup);
     if let Some(impacts) = impact::hardest(case, motion, setup, speed) {
         text.push_str(&impacts.lines());
-    }
-    if let Some(reason) = moving::refusal(contacts) {
-        text.push_str(&format!("    not with LIGGGHTS: {reason}\n"));
     }
     Some(text)
 }

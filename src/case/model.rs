@@ -15,7 +15,7 @@ use calcine_coupler::feeds::Outlet;
 use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
-use calcine_coupler::motion::{ContactLaw, Wall};
+use calcine_coupler::motion::{ContactLaw, LostParticles, Wall};
 use calcine_coupler::parcels::{ParcelCollisions, ParcelPacking};
 pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
@@ -181,6 +181,8 @@ pub struct FreeMotion {
     pub parcels: Option<ParcelSpec>,
     /// When the bed is held.
     pub held: Holds,
+    /// What becomes of particles that leave the gas mesh.
+    pub lost: LostParticles,
 }
 
 /// `[motion.parcels]`: how parcels move.

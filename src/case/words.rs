@@ -3,6 +3,7 @@
 
 pub(super) use calcine_adapters::openfoam::stock::StockSolver;
 pub(super) use calcine_coupler::momentum_model::MomentumModel;
+pub(super) use calcine_coupler::motion::LostParticles;
 pub(super) use calcine_coupler::packing::Share;
 use calcine_coupler::packing::regular::Lattice;
 pub(super) use calcine_coupler::physics::film::{FilmTemperature, StefanFlow};
@@ -170,6 +171,7 @@ case_words! {
     TuningAlgorithm { "least-squares" => TuningAlgorithm(false), "nsga2" => TuningAlgorithm(true) }
     GasStorage { "process" => GasStorage::Process, "accelerated" => GasStorage::Accelerated }
     MotionKind { "real-time" => MotionKind::RealTime, "accelerated" => MotionKind::Accelerated }
+    LostParticles { "end" => LostParticles::End, "take-out" => LostParticles::TakeOut }
     CombustionModel { "laminar" => CombustionModel::Laminar, "pasr" => CombustionModel::Pasr }
     TurbulenceModel {
         "k-epsilon" => TurbulenceModel::KEpsilon,

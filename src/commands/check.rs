@@ -7,9 +7,10 @@ use clap::Args;
 use super::console::say;
 use super::failure::{Failure, chain};
 use super::parallel::crowded;
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts, check_own_script};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts, check_for_liggghts};
 use crate::case::{check_report, contacts};
 use crate::exit;
+use crate::progress::preparing;
 use crate::valid::ValidCase;
 
 /// Checks a case as a run would: prints all its errors at once, or its clocks, sizes, laws and what each backend honours.
@@ -29,7 +30,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let mut valid = ValidCase::open(&arguments.case, &arguments.set)?;
+    let mut valid = preparing(|| ValidCase::open(&arguments.case, &arguments.set))?;
     let pairing = Pairing {
         gas: arguments.gas,
         particles: arguments.particles,
@@ -42,17 +43,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         prepared,
         packing,
     } = &valid;
+    let refused = check_for_liggghts(case, prepared).err();
+    let refused = refused.map(|error| chain(&error));
     say(check_report(
         case,
         &prepared.mesh,
         &prepared.particles,
         packing,
+        refused.as_deref(),
     ))?;
     if let Some(text) = contacts::report(case, &prepared.mesh, &prepared.particles) {
         say(text)?;
-    }
-    if let Err(error) = check_own_script(case, prepared) {
-        say(format_args!("    not with LIGGGHTS: {}", chain(&error)))?;
     }
     Ok(exit::OK)
 }

@@ -13,6 +13,7 @@ use super::inputs::results_folder;
 use super::parallel::Transport;
 use crate::assembly::{Pairing, SolverStarts};
 use crate::exit;
+use crate::progress::preparing;
 use crate::results::unoccupied;
 use crate::valid::ValidCase;
 
@@ -114,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         let message = "`--results` goes with plants; name the pairings of a bed with `--pairings`";
         return Err(Failure::new(exit::CASE, message));
     }
-    let valid = ValidCase::open(&arguments.case, &arguments.set)?;
+    let valid = preparing(|| ValidCase::open(&arguments.case, &arguments.set))?;
     let pairings = able_ones(&valid, &arguments.pairings)?;
     let ValidCase { case, prepared, .. } = valid;
     let out = arguments.out.clone().unwrap_or_else(|| {

@@ -208,6 +208,15 @@ fn closing(summary: &Summary) -> String {
             printed(used_up.mass_kg)
         );
     }
+    let lost = summary.passed.lost;
+    if lost.rows > 0 {
+        let _ = writeln!(
+            text,
+            "  left the gas mesh and taken out: {} particles of {} kg",
+            lost.rows,
+            printed(lost.mass_kg)
+        );
+    }
     let of_case = summary.case_warnings.len();
     if of_case > 0 {
         let _ = writeln!(

@@ -6,6 +6,7 @@ use super::failure::Failure;
 use crate::assembly::PreparedCase;
 use crate::case::model::Case;
 use crate::exit;
+use crate::progress::preparing;
 pub(super) use crate::simulation::results_folder;
 use crate::valid::ValidCase;
 
@@ -19,6 +20,6 @@ pub(super) fn read_and_prepare(
     path: &Path,
     set: &[String],
 ) -> Result<(Case, PreparedCase), Failure> {
-    let valid = ValidCase::open(path, set)?;
+    let valid = preparing(|| ValidCase::open(path, set))?;
     Ok((valid.case, valid.prepared))
 }

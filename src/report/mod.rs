@@ -184,6 +184,7 @@ fn passed(summary: &Summary) -> String {
         ("fed", passed.fed),
         ("discharged", passed.discharged),
         ("used up", passed.used_up),
+        ("lost", passed.lost),
     ]
     .into_iter()
     .filter(|(_, inventory)| inventory.rows > 0)

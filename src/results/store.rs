@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::interior::ColumnValues;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
+use hdf5::file::MetadataCacheConfig;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, FileBuilder, Group, H5Type, Location};
 use ndarray::{Array2, ArrayView1, ArrayView2};
@@ -22,6 +23,9 @@ use crate::case::model::Case;
 const CHUNK_ROWS: usize = 256;
 /// Values of one chunk of a field.
 const CHUNK_VALUES: usize = 1 << 16;
+
+/// HDF5's cache of metadata in bytes; it takes some fifteen times as much memory. A snapshot is written once and not looked at again.
+const METADATA_CACHE: usize = 1 << 16;
 
 /// The open file.
 pub(super) struct Store {
@@ -212,7 +216,14 @@ impl Store {
 /// reading while the run goes on. The summary guards the directory instead.
 fn unlocked() -> FileBuilder {
     let mut builder = File::with_options();
-    builder.with_fapl(|access| access.file_locking(false));
+    // By its defaults the cache grows with the snapshots, up to 32 MiB.
+    let cache = MetadataCacheConfig {
+        initial_size: METADATA_CACHE,
+        min_size: METADATA_CACHE,
+        max_size: METADATA_CACHE,
+        ..MetadataCacheConfig::default()
+    };
+    builder.with_fapl(|access| access.file_locking(false).mdc_config(&cache));
     builder
 }
 

@@ -199,6 +199,8 @@ pub struct PassedParticles {
     pub discharged: PassedInventory,
     /// What was left of those that were used up, burnt for example, as they were taken out.
     pub used_up: PassedInventory,
+    /// What left the gas mesh and was taken out.
+    pub lost: PassedInventory,
 }
 
 impl PassedParticles {
@@ -214,6 +216,7 @@ impl PassedParticles {
             fed: of(fed),
             discharged: of(discharged),
             used_up: of(&ledger.used_up),
+            lost: of(&ledger.lost),
         }
     }
 }

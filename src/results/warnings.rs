@@ -45,6 +45,13 @@ pub enum WarningPlace {
     Cell([f64; 3]),
     /// At the particle of this id.
     Particle(u64),
+    /// At the particle of this id, which left the gas mesh with its centre here, in m.
+    Left {
+        /// Its id.
+        id: u64,
+        /// Its centre.
+        at: [f64; 3],
+    },
 }
 
 impl From<FindingPlace> for WarningPlace {
@@ -53,6 +60,7 @@ impl From<FindingPlace> for WarningPlace {
             FindingPlace::Run => Self::Run,
             FindingPlace::Cell(centre) => Self::Cell(centre.into()),
             FindingPlace::Particle(id) => Self::Particle(id),
+            FindingPlace::Left { id, at } => Self::Left { id, at: at.into() },
         }
     }
 }
@@ -66,6 +74,10 @@ impl fmt::Display for WarningPlace {
                 write!(f, " in the cell at ({x}, {y}, {z}) m")
             }
             Self::Particle(id) => write!(f, " at particle {id}"),
+            Self::Left { id, at } => {
+                let [x, y, z] = at.map(short);
+                write!(f, " of particle {id} at ({x}, {y}, {z}) m")
+            }
         }
     }
 }

@@ -179,8 +179,13 @@ impl Target for AttachedFiles {
                 if particles.id.len() <= MOST
                     && let Ok(packing) = prepared.packing(&case)
                 {
-                    let report =
-                        calcine::case::check_report(&case, &prepared.mesh, particles, &packing);
+                    let report = calcine::case::check_report(
+                        &case,
+                        &prepared.mesh,
+                        particles,
+                        &packing,
+                        None,
+                    );
                     assert!(!report.is_empty());
                 }
                 true

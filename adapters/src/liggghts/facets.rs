@@ -211,6 +211,7 @@ mod tests {
             step: 1e-6,
             gravity: Vec3::zeros(),
             bounds: (Vec3::zeros(), Vec3::new(0.1, 0.2, 0.3)),
+            lost: Default::default(),
             periodicity: Default::default(),
             materials: Vec::new(),
             material_of: Vec::new(),

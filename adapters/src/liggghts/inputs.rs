@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::motion::Motion;
+use calcine_coupler::motion::{LostParticles, Motion};
 use calcine_coupler::periodic_motion;
 use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
@@ -81,7 +81,8 @@ impl Inputs<'_> {
         Ok(files.map(|(path, _)| path))
     }
 
-    fn check(&self) -> Result<(), PartError> {
+    /// Refuses what LIGGGHTS cannot do.
+    pub fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
         let setup = self.setup;
         if matches!(setup.motion, Motion::Parcels(_)) {
@@ -190,7 +191,10 @@ impl Inputs<'_> {
         };
         let script = template
             .replace("{bins}", &format!("{bins:e}"))
-            .replace("{boundary}", &moving::boundary(&self.periodicity()))
+            .replace(
+                "{boundary}",
+                &moving::boundary(&self.periodicity(), self.lost()),
+            )
             .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
@@ -261,6 +265,14 @@ impl Inputs<'_> {
     fn smallest(&self) -> f64 {
         let radii = self.setup.radius.iter().copied();
         radii.fold(f64::INFINITY, f64::min)
+    }
+
+    /// What becomes of particles that leave.
+    fn lost(&self) -> LostParticles {
+        match &self.setup.motion {
+            Motion::Free(contacts) => contacts.lost,
+            Motion::Frozen | Motion::Parcels(_) => LostParticles::End,
+        }
     }
 
     /// Directions in which the domain of moving particles repeats itself.

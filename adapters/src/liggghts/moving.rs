@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use calcine_coupler::motion::{
-    Cohesion, ContactForce, Contacts, Pair, Rolling, Wall, WallMotion, WallShape,
+    Cohesion, ContactForce, Contacts, LostParticles, Pair, Rolling, Wall, WallMotion, WallShape,
 };
 use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
@@ -442,9 +442,13 @@ fn moving_mesh(text: &mut String, index: usize, motion: &WallMotion) {
     }
 }
 
-/// LIGGGHTS' words for the sides of its box.
-pub fn boundary(periodicity: &Periodicity) -> String {
-    let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { "f" };
+/// LIGGGHTS' words for the sides of its box, which follow the particles where those that leave are taken out later.
+pub fn boundary(periodicity: &Periodicity, lost: LostParticles) -> String {
+    let side = match lost {
+        LostParticles::End => "f",
+        LostParticles::TakeOut => "m",
+    };
+    let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { side };
     periodicity.axes.each_ref().map(word).join(" ")
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::motion::Contacts;
+use calcine_coupler::motion::{Contacts, LostParticles};
 use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
 use thiserror::Error;
@@ -220,7 +220,7 @@ impl ScriptTemplate {
     ) -> Result<String, ScriptTemplateError> {
         let variables = self.variables(contacts, values);
         let findings = [
-            self.check_boundary(&contacts.periodicity),
+            self.check_boundary(&contacts.periodicity, contacts.lost),
             self.check_step(&variables, values.step),
             self.check_gravity(&variables, contacts.gravity),
         ];
@@ -259,7 +259,10 @@ impl ScriptTemplate {
         let mut add = |name: &str, value: String| all.push((format!("{PREFIX}{name}"), value));
         add("data", DATA.into());
         add("processors", values.processors.clone());
-        add("boundary", moving::boundary(&contacts.periodicity));
+        add(
+            "boundary",
+            moving::boundary(&contacts.periodicity, contacts.lost),
+        );
         let (lower, upper) = values.corners;
         let numbers = [
             ("step", values.step),
@@ -308,8 +311,12 @@ impl ScriptTemplate {
 
     /// Sides of the box repeat themselves where those of the case do, and nowhere else. A script that says nothing of them
     /// has them all do so.
-    fn check_boundary(&self, periodicity: &Periodicity) -> Result<(), ScriptTemplateError> {
-        let wanted = moving::boundary(periodicity);
+    fn check_boundary(
+        &self,
+        periodicity: &Periodicity,
+        lost: LostParticles,
+    ) -> Result<(), ScriptTemplateError> {
+        let wanted = moving::boundary(periodicity, lost);
         let mut found = None;
         for command in &self.commands {
             let words = command.words();
@@ -342,6 +349,14 @@ impl ScriptTemplate {
                 };
                 return Err(command.refuse(
                     rule,
+                    format!("write `boundary {wanted}`, or `boundary {VARIABLE}`"),
+                ));
+            }
+            let fixed =
+                lost == LostParticles::TakeOut && sides.iter().any(|side| side.contains('f'));
+            if fixed {
+                return Err(command.refuse(
+                    "LIGGGHTS drops what leaves a fixed side, but motion.lost = \"take-out\" has it booked",
                     format!("write `boundary {wanted}`, or `boundary {VARIABLE}`"),
                 ));
             }
@@ -661,6 +676,23 @@ mod tests {
     }
 
     #[test]
+    fn a_fixed_side_drops_what_is_to_be_taken_out() {
+        let none = Periodicity::default();
+        let check = |more: &str| template(more).check_boundary(&none, LostParticles::TakeOut);
+        assert!(check("boundary m s m").is_ok());
+        assert!(check("boundary ${calcine_boundary}").is_ok());
+        for fixed in ["boundary f m m", "boundary m m mf"] {
+            let told = check(fixed).err().map(|error| error.to_string());
+            let told = told.unwrap_or_default();
+            assert!(
+                told.contains("drops what leaves a fixed side"),
+                "{fixed}: {told}"
+            );
+            assert!(told.contains("write `boundary m m m`"), "{fixed}: {told}");
+        }
+    }
+
+    #[test]
     fn the_sides_of_the_box_repeat_themselves_where_the_case_does() {
         let span = Some(PeriodicSpan {
             low: 0.0,
@@ -670,7 +702,7 @@ mod tests {
             axes: [span, None, None],
         };
         let check = |more: &str, periodicity: &Periodicity| {
-            let found = template(more).check_boundary(periodicity);
+            let found = template(more).check_boundary(periodicity, LostParticles::End);
             found
                 .err()
                 .map(|error| error.to_string())

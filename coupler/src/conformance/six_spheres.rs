@@ -51,6 +51,7 @@ pub fn soft_spheres(step: f64, young: f64) -> Contacts {
         step,
         gravity: Vec3::zeros(),
         bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
+        lost: Default::default(),
         periodicity: Default::default(),
         materials: vec![Elastic {
             young,

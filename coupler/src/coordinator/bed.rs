@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use calcine_physics::{Vec3, sphere};
+use rayon::prelude::*;
 
 use super::error::RunError;
 use super::meter::{Meter, Stage};
@@ -52,6 +53,13 @@ impl BedStage {
     pub fn is_of_other_places(&self, particles: &ParticleFields<'_>) -> bool {
         let before = &self.mapped;
         particles.position != before.position || particles.radius != before.radius
+    }
+
+    /// Rows of particles that stand in no cell, ascending.
+    pub fn outside(&self, positions: &[Vec3]) -> Vec<usize> {
+        let rows = positions.par_iter().enumerate().with_min_len(1024);
+        let out = rows.filter(|(_, position)| !self.mapper.is_within(**position));
+        out.map(|(row, _)| row).collect()
     }
 
     /// Maps the particles anew where any has moved or changed its radius; true where one has.

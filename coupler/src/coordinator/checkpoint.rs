@@ -113,7 +113,7 @@ impl CoupledRun {
             .ledger
             .fed_and_discharged
             .iter()
-            .chain([&self.ledger.used_up])
+            .chain([&self.ledger.used_up, &self.ledger.lost])
             .flat_map(CarriedInventory::numbers)
             .collect();
         state.set_f64s("traffic_moved", &moved);
@@ -158,13 +158,18 @@ impl CoupledRun {
             let owed = owed.map(|impulse| Vec3::from(*impulse)).collect();
             self.motion.carry.restore(owed);
         }
-        let moved = state.f64s_of("traffic_moved", 18)?.chunks_exact(6);
+        let moved = state.f64s_of("traffic_moved", 24)?.chunks_exact(6);
         let Ledger {
             fed_and_discharged,
             used_up,
+            lost,
             ..
         } = &mut self.ledger;
-        for (total, values) in fed_and_discharged.iter_mut().chain([used_up]).zip(moved) {
+        for (total, values) in fed_and_discharged
+            .iter_mut()
+            .chain([used_up, lost])
+            .zip(moved)
+        {
             let numbers = <[f64; 6]>::try_from(values).unwrap_or_default();
             *total = CarriedInventory::from_numbers(numbers);
         }

@@ -12,6 +12,7 @@ use crate::error::PartError;
 use crate::finite::NotFinite;
 use crate::mapping::MappingError;
 use crate::models::{ParticleModelError, RestoreError};
+use crate::motion::LOST_REMEDY;
 use crate::observer::ObserverError;
 use crate::packing::PackingError;
 use crate::physical::UnphysicalGas;
@@ -27,6 +28,26 @@ pub enum RunError {
     /// Particles could not be mapped onto cells.
     #[error(transparent)]
     Mapping(#[from] MappingError),
+    /// A particle that left the mesh.
+    #[error(
+        "particle {id} of \"{population}\" left the gas mesh at ({}, {}, {}) m with a velocity of ({}, {}, {}) m/s, before window {window} \
+         (from {start}); {LOST_REMEDY}",
+        place.x, place.y, place.z, velocity.x, velocity.y, velocity.z
+    )]
+    Lost {
+        /// Its id.
+        id: u64,
+        /// Name of its population.
+        population: String,
+        /// Its centre in m.
+        place: Vec3,
+        /// Its velocity in m/s of motion time.
+        velocity: Vec3,
+        /// Index of the window that cannot begin.
+        window: u64,
+        /// Start of that window, process time.
+        start: Ticks,
+    },
     /// The bed does not fit the mesh.
     #[error(transparent)]
     Smoother(#[from] SmootherError),

@@ -58,6 +58,7 @@ use crate::error::{FailureKind, PartError};
 use crate::exchange::ExchangeConvergence;
 use crate::findings::Finding;
 use crate::ledger::{BalanceLine, Ledger};
+use crate::mapping::MappingError;
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
 use crate::observer::{CommittedState, Observer, ParticleGasExchange, Timing};
@@ -266,6 +267,7 @@ impl CoupledRun {
         };
         self.check_finite(&window)?;
         self.take_out_used_up(supervisor, used_up)?;
+        self.take_out_lost(supervisor)?;
         self.resize(supervisor)?;
         self.last = Some(window);
 
@@ -391,7 +393,12 @@ impl CoupledRun {
 
     fn map(&mut self) -> Result<(), RunError> {
         let particles = self.parts.particles.fields();
-        let moved = self.bed.update(&particles, &mut self.meter)?;
+        let moved = match self.bed.update(&particles, &mut self.meter) {
+            Err(RunError::Mapping(MappingError::Outside { particle, .. })) => {
+                return Err(self.lost(particle));
+            }
+            moved => moved?,
+        };
         if std::mem::take(&mut self.neighbours_due) || moved {
             self.find_neighbours();
         }

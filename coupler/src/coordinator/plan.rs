@@ -9,6 +9,7 @@ use super::step_limit::ContactStepLimit;
 use crate::feeds::FeedsAndOutlets;
 use crate::hold::Holds;
 use crate::mapping::Method;
+use crate::motion::LostParticles;
 use crate::paths::PathsSetup;
 use crate::setup::TimeScheme;
 use crate::time::{Acceleration, GasStorage, Ticks};
@@ -66,6 +67,8 @@ pub struct Plan {
     pub free: Vec<bool>,
     /// When those that move are held.
     pub holds: Holds,
+    /// What becomes of particles that leave the mesh.
+    pub lost: LostParticles,
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Feeds and outlets.

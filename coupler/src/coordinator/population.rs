@@ -9,9 +9,10 @@ use super::balances::place;
 use super::error::RunError;
 use super::particles::momentum;
 use crate::feeds::WindowSpan;
+use crate::findings::{Finding, FindingKind, FindingPlace};
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::models::{ParticleModels, PopulationNewcomer};
-use crate::motion::ParticleChanges;
+use crate::motion::{LostParticles, ParticleChanges};
 use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
@@ -93,6 +94,65 @@ impl CoupledRun {
         moved.gone.mass = left;
         self.ledger.used_up.add_all(&moved.gone);
         Ok(())
+    }
+
+    /// Takes particles out that left the mesh, where the case wants that, books them and tells of them.
+    pub(super) fn take_out_lost(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {
+        if self.plan.lost == LostParticles::End {
+            return Ok(());
+        }
+        let fields = self.parts.particles.fields();
+        let rows = self.bed.outside(fields.position);
+        let speed = |row: usize| fields.velocity[row].norm();
+        let Some(fastest) = rows
+            .iter()
+            .copied()
+            .max_by(|&a, &b| speed(a).total_cmp(&speed(b)))
+        else {
+            return Ok(());
+        };
+        self.findings.push(Finding {
+            kind: FindingKind::LostParticles,
+            count: rows.len() as u64,
+            value: speed(fastest),
+            limit: None,
+            place: FindingPlace::Left {
+                id: fields.id[fastest],
+                at: fields.position[fastest],
+            },
+        });
+        self.findings.sort_by_key(|finding| finding.kind);
+        let change = ParticleChanges {
+            remove: rows.iter().map(|&row| fields.id[row]).collect(),
+            ..ParticleChanges::default()
+        };
+        let step = PopulationStep {
+            change,
+            rows,
+            temperature: Vec::new(),
+        };
+        let moved = self.exchange_particles(supervisor, step)?;
+        self.ledger.lost.add_all(&moved.gone);
+        Ok(())
+    }
+
+    /// The error of a particle that stands in no cell.
+    pub(super) fn lost(&self, row: usize) -> RunError {
+        let fields = self.parts.particles.fields();
+        let population = fields.population[row] as usize;
+        RunError::Lost {
+            id: fields.id[row],
+            population: self
+                .plan
+                .populations
+                .get(population)
+                .cloned()
+                .unwrap_or_default(),
+            place: fields.position[row],
+            velocity: fields.velocity[row],
+            window: self.windows,
+            start: self.clocks.process,
+        }
     }
 
     fn exchange_particles(

@@ -106,6 +106,13 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
         Weights::from_pieces(cells, positions.len(), &pieces)
     }
 
+    /// True where a position, brought back between periodic planes, lies in a cell.
+    pub fn is_within(&self, position: Vec3) -> bool {
+        self.locator
+            .cell_at(self.periodicity.wrap(position))
+            .is_some()
+    }
+
     /// Particles in the order of space: neighbours need the same cells, which memory is slow to give.
     fn order(&self, positions: &[Vec3]) -> Vec<u32> {
         let region = |position: &Vec3| self.locator.region(*position) as u32;

@@ -1,6 +1,7 @@
 //! Setups that the native gas cannot take.
 
 use calcine_coupler::checkpoint::StateFileError;
+use calcine_coupler::motion::LOST_REMEDY;
 use calcine_coupler::periodic_motion::PeriodicMotionError;
 use thiserror::Error;
 
@@ -65,8 +66,7 @@ pub enum NativeError {
     Periodic(#[from] PeriodicMotionError),
     /// A particle that left the space in which particles may be.
     #[error(
-        "particle {id} left its bounds at ({}, {}, {}) m with a velocity of ({}, {}, {}) m/s; a hole in \
-         the walls or a time step that is too long lets particles out",
+        "particle {id} left the box about the gas mesh at ({}, {}, {}) m with a velocity of ({}, {}, {}) m/s; {LOST_REMEDY}",
         place[0], place[1], place[2], velocity[0], velocity[1], velocity[2]
     )]
     OutOfBounds {

@@ -35,5 +35,6 @@ pub(super) const MOTION: &[Key] = &[
     key("rolling", Law(laws::rolling, &[]), Without("required where particles are free"), "Resistance to rolling.", "{ law = \"none\" }"),
     key("cohesion", Law(laws::cohesion, &[]), Without("required where particles are free"), "Attraction between surfaces.", "{ law = \"none\" }"),
     key("parcels", Table(PARCELS), Without("particles move one by one"), "How parcels move, with motion = \"parcels\" of all populations; in place of contacts, rolling and cohesion. [[walls]] lie at every patch that is not periodic, and [[contacts]] state `restitution` and `friction` with them.", "{ pressure = \"10 Pa\", close_packing = 0.6 }"),
+    key("lost", Choice(words::<LostParticles>), Default("end"), "What becomes of particles whose centres leave the gas mesh: they end the run, or are taken out after the window in which they left, warned of and booked (`passed.lost` of summary.json). Parcels never leave.", "\"take-out\""),
     key("held", Either(&Spans, &Table(HELD)), Without("never"), "Process times in which the bed is held: it comes to rest, and is let go from rest with its contacts as they were. Meanwhile walls, feeds and outlets stand, and AF may be above 1 in real time too.", "[[\"10 s\", \"60 s\"], [\"70 s\", \"120 s\"]]"),
 ];

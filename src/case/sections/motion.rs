@@ -1,6 +1,6 @@
 //! `[motion]`: how particles that are free move, and what their contacts need to be told.
 
-use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Rolling, Wall};
+use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, LostParticles, Rolling, Wall};
 
 use super::{hold, parcels};
 use crate::case::model::{
@@ -15,6 +15,7 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
     let step = section.number("motion_step");
     let long_step = section.truth("long_step");
     let attractive = section.truth("attractive_damping");
+    let lost = section.choice::<LostParticles>("lost");
     let held = hold::holds(&section, time);
     if section.has("parcels") {
         let parcels = parcels::parcels(&section);
@@ -31,6 +32,7 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
             },
             parcels: Some(parcels?),
             held,
+            lost: lost?,
         });
     }
     for key in ["contact", "rolling", "cohesion"] {
@@ -52,6 +54,7 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
         },
         parcels: None,
         held,
+        lost: lost?,
     })
 }
 

@@ -7,14 +7,15 @@ use crate::case::model::{Coupling, FreeMotion, MotionKind, MotionSpec, ParcelSpe
 use crate::case::table::TableReader;
 use crate::case::words::PackingScheme;
 
-/// Keys of `[motion]` that are of particles which touch each other.
-const OF_CONTACTS: [&str; 6] = [
+/// Keys of `[motion]` that are of particles which touch each other, and which walls may let out.
+const OF_CONTACTS: [&str; 7] = [
     "contact",
     "rolling",
     "cohesion",
     "motion_step",
     "long_step",
     "attractive_damping",
+    "lost",
 ];
 
 pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {

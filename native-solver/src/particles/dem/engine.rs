@@ -7,7 +7,7 @@ mod state;
 
 use std::iter::repeat;
 
-use calcine_coupler::motion::{ContactForce, Contacts};
+use calcine_coupler::motion::{ContactForce, Contacts, LostParticles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{
     ContactModel, HertzMindlin, Linear, LinearSprings, OpenfoamSpringSliderDashpot,
@@ -306,9 +306,12 @@ impl Engine {
         self.check()
     }
 
-    /// Every particle must be within the bounds.
+    /// Every particle must be within the bounds, or at least somewhere where the coordinator takes those out that left.
     fn check(&self) -> Result<(), EscapedParticle> {
-        let (low, high) = self.contacts.bounds;
+        let (low, high) = match self.contacts.lost {
+            LostParticles::End => self.contacts.bounds,
+            LostParticles::TakeOut => (Vec3::repeat(f64::MIN), Vec3::repeat(f64::MAX)),
+        };
         for (k, place) in self.spheres.place[..self.spheres.len()].iter().enumerate() {
             let centre = self.contacts.periodicity.wrap(place.centre);
             if !(0..3).all(|axis| centre[axis] >= low[axis] && centre[axis] <= high[axis]) {
