@@ -293,6 +293,7 @@ fn plan(results: &Path) -> Plan {
         substance: vec![0],
         populations: vec!["beads".into()],
         paths: Default::default(),
+        lost: Default::default(),
         step_limit: None,
     }
 }
