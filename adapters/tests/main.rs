@@ -20,4 +20,5 @@ mod openfoam_periodic;
 mod openfoam_ranks;
 mod openfoam_stirred_cells;
 mod openfoam_support;
+mod openfoam_templates;
 mod openfoam_trials;

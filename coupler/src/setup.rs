@@ -74,7 +74,7 @@ pub struct GasControls {
     /// Pressure corrections per outer iteration.
     pub pressure_corrections: u32,
     /// Pressure corrections per outer iteration at most, where the pace of the outer loop asks for more than
-    /// `pressure_corrections`. Native gas.
+    /// `pressure_corrections`.
     pub most_pressure_corrections: u32,
     /// The outer loop ends where scaled initial residuals fall below this.
     pub outer_tolerance: f64,

@@ -63,10 +63,17 @@ fn displaced_points_leave_second_order() {
 }
 
 #[test]
-fn tetrahedra_upright_and_leaning_by_30_degrees_have_second_order() {
-    for degrees in [0.0, 30.0] {
+fn tetrahedra_that_lean_by_up_to_45_degrees_have_second_order() {
+    for degrees in [0.0, 30.0, 45.0] {
         converges(degrees, CellShape::Tetrahedra(0.0), &[6, 9], 1.8);
     }
+}
+
+/// Here corrections grow whose gradient follows all of a difference.
+#[test]
+fn tetrahedra_that_lean_by_60_and_polyhedra_that_lean_by_45_degrees_converge() {
+    converges(60.0, CellShape::Tetrahedra(0.0), &[6, 9], 1.2);
+    converges(45.0, CellShape::Polyhedra(0.0), &[9, 12], 1.2);
 }
 
 #[test]

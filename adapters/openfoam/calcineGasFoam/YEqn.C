@@ -21,7 +21,7 @@
 void Foam::calcine::gas::limitNobodyByNoise(surfaceScalarField& limiter, const volScalarField& Y) const
 {
     const surfaceScalarField difference(fvc::snGrad(Y)/mesh_.nonOrthDeltaCoeffs());
-    const scalar noise = max(sqr(outerTolerance_), VSMALL);
+    const scalar noise = max(sqr(outer_.tolerance), VSMALL);
     const auto blend = [&](scalarField& values, const scalarField& differences)
     {
         forAll(values, i)

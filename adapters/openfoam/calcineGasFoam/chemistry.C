@@ -128,7 +128,7 @@ Foam::scalar Foam::calcine::gas::solveScalars(scalar flow, report& result)
         const scalar residual = species_ ? solveSpecies(speciesTransport(*this), result) : 0;
         return max(residual, solveEnthalpy(result));
     }
-    const scalar enough = max(outerTolerance_, closer*flow);
+    const scalar enough = max(outer_.tolerance, closer*flow);
     PtrList<volScalarField>& Y = species_->Y();
     scalar first = 0, change = 0;
     for (label sweep = 0; sweep < mostSweeps; ++sweep)
@@ -239,7 +239,7 @@ void Foam::calcine::gas::runCell
     }
     const scalar content = mixture.heatCapacity(guess, reached)*guess;
     cellRun& run = reactions_->runs()[celli];
-    const bool again = !run.is(with, same*outerTolerance_, content);
+    const bool again = !run.is(with, same*outer_.tolerance, content);
     throughflow flow;
     scalarList start(species);
     bool reacts = false;

@@ -129,9 +129,10 @@ Foam::calcine::gas::gas
     startVelocity_(U_.primitiveField())
 {
     const dictionary& controls = properties.subDict("controls");
-    outerIterations_ = controls.get<label>("outerIterations");
-    corrections_ = controls.get<label>("pressureCorrections");
-    outerTolerance_ = controls.get<scalar>("outerTolerance");
+    outer_.iterations = controls.get<label>("outerIterations");
+    outer_.corrections = controls.get<label>("pressureCorrections");
+    outer_.mostCorrections = controls.get<label>("mostPressureCorrections");
+    outer_.tolerance = controls.get<scalar>("outerTolerance");
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     twoStages_ = controls.lookupOrDefault<bool>("twoStages", false);
     measureFaces();
@@ -164,6 +165,7 @@ Foam::calcine::gas::gas
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
+    committed_.density = density();
     committed_.velocity = startVelocity_;
     committed_.pressure = p_.primitiveField();
     committed_.basePressure = pRef_;
@@ -304,6 +306,7 @@ void Foam::calcine::gas::restore()
     }
     U_.primitiveFieldRef() = committed_.velocity;
     p_.primitiveFieldRef() = committed_.pressure;
+    p_.correctBoundaryConditions();
     modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
     pressureGradient_ = committed_.pressureGradient;
     pressureAlong_ = committed_.pressureGradient;
@@ -404,6 +407,7 @@ void Foam::calcine::gas::resume(const fileName& directory)
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
     models_->read(directory);
+    resumed_ = true;
 }
 
 
@@ -430,6 +434,7 @@ void Foam::calcine::gas::takeOver(const fileName& directory)
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
+    resumed_ = false;
 }
 
 
@@ -437,6 +442,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
 {
     const clockValue begun(true);
     reactionTime_ = 0;
+    resumed_ = false;
     given_ = given;
     restore();
     // Reactions are split from transport, and particles follow the fractions at the window's end: both are first order anyhow.
@@ -455,100 +461,13 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
 }
 
 
-void Foam::calcine::gas::beginStage(const window& when, const scalarField& voidFraction)
-{
-    window_ = when;
-    given_.voidFraction = voidFraction;
-    voidFraction_.primitiveFieldRef() = given_.voidFraction;
-    voidFraction_.correctBoundaryConditions();
-    pressureShare_ = given_.voidFraction;
-    if (takesAllPressure_)
-    {
-        pressureShare_ = 1;
-    }
-    // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
-    modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
-    boundary_.updateState(when.processEnd, pRef_, thermo_->T(), p_);
-    if (species_)
-    {
-        boundary_.updateComposition(when.processEnd, species_->Y());
-    }
-    thermo_->he().correctBoundaryConditions();
-    thermo_->correct();
-    boundary_.updateVelocity(when.processEnd, given_.voidFraction, thermo_->rho()(), U_);
-    modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
-    thermo_->correct();
-    // Without a commit the bed of this attempt says how much gas there is.
-    if (when.index == 0 || !committed_.placed)
-    {
-        place();
-        restore();
-        models_->place(committed_.voidFraction*density());
-    }
-    updateInflow();
-    U_.correctBoundaryConditions();
-    if (oblique_)
-    {
-        const scalarField held(committed_.mass/mesh_.cellVolumes());
-        oldMassGradient_ = massVelocityGradient(held*committed_.velocity, held, committed_.flux);
-        massGradient_ = oldMassGradient_;
-    }
-
-    models_->begin();
-    beginReactions();
-}
-
-
-void Foam::calcine::gas::step(report& result)
-{
-    result = report();
-    for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
-    {
-        // The switching of limiters may otherwise lead from one iterate to another and back for ever.
-        share_ = outer > 8 ? 0.5 : 1;
-        updateBasePressure();
-        const scalarField rho(density());
-        setFlux();
-        result.residual = predictVelocity(rho, result);
-        result.residual = max(result.residual, assemblePressure(rho, outer == 1));
-        holdFriction();
-        if (oblique_ && outer == 1)
-        {
-            // The gradient that carries pressures along faces is not kept between windows: it follows the fluxes at hand.
-            updateForce();
-            for (label settling = 0; settling < 4; ++settling)
-            {
-                updatePressureAlong(false);
-            }
-        }
-        for (label correction = 0; correction < max(corrections_, 1); ++correction)
-        {
-            correctPressure(rho, correction == 0, result);
-        }
-        mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
-        setFlux();
-        result.residual = max(result.residual, solveScalars(result.residual, result));
-        guard(true);
-        result.outerIterations = outer;
-        updateProperties();
-        if (result.residual <= outerTolerance_)
-        {
-            result.converged = true;
-            break;
-        }
-    }
-    closeReactions(result);
-    guard(false);
-    finishReport(result);
-}
-
-
 void Foam::calcine::gas::commit()
 {
     committed_.placed = true;
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
+    committed_.density = density();
     forAll(committed_.composition, k)
     {
         committed_.composition[k] = species_->Y()[k].primitiveField();
@@ -604,7 +523,7 @@ void Foam::calcine::gas::guard(bool early) const
 
 const Foam::scalarField& Foam::calcine::gas::temperature() const
 {
-    return thermo_->T().primitiveField();
+    return resumed_ ? committed_.temperature : thermo_->T().primitiveField();
 }
 
 
@@ -616,7 +535,7 @@ Foam::scalarField Foam::calcine::gas::absolutePressure() const
 
 Foam::scalarField Foam::calcine::gas::gasDensity() const
 {
-    return density();
+    return resumed_ ? committed_.density : density();
 }
 
 

@@ -103,7 +103,7 @@ Foam::scalarList Foam::calcine::gas::backflow() const
         {
             const label facei = patch.start() + i, celli = patch.faceCells()[i];
             const scalar inwards = -flux_[facei];
-            if (inwards*window_.storageSpan <= outerTolerance_*mass_[celli])
+            if (inwards*window_.storageSpan <= outer_.tolerance*mass_[celli])
             {
                 continue;
             }

@@ -11,7 +11,7 @@ namespace
 using namespace Foam;
 
 // First and last word of a file of state: a file cut short lacks the last.
-const char* const firstWord = "calcineGasState4";
+const char* const firstWord = "calcineGasState5";
 const char* const lastWord = "complete";
 
 fileName stateFile(const fileName& directory, label rank)
@@ -37,7 +37,7 @@ struct part
         ranks = readLabel(file);
         file>> cells >> faces;
         state.placed = readLabel(file) != 0;
-        file>> state.mass >> state.enthalpy >> state.temperature >> state.velocity
+        file>> state.mass >> state.enthalpy >> state.temperature >> state.density >> state.velocity
             >> state.pressure >> state.basePressure >> state.pressureGradient >> state.flux
             >> state.voidFraction;
         state.composition.setSize(readLabel(file));
@@ -81,7 +81,7 @@ void Foam::calcine::gasState::write
     OFstream file(stateFile(directory, Pstream::myProcNo()), IOstream::BINARY);
     file<< word(firstWord) << nl << Pstream::nProcs() << nl
         << numbers.cells << nl << numbers.faces << nl << label(placed) << nl
-        << mass << nl << enthalpy << nl << temperature << nl << velocity << nl
+        << mass << nl << enthalpy << nl << temperature << nl << density << nl << velocity << nl
         << pressure << nl << basePressure << nl << pressureGradient << nl << flux << nl
         << voidFraction << nl << composition.size() << nl;
     for (const scalarField& fractions : composition)
@@ -129,7 +129,7 @@ void Foam::calcine::gasState::read
     {
         faceOf.insert(mag(numbers.faces[facei]), facei);
     }
-    for (scalarField* values : {&mass, &enthalpy, &temperature, &pressure, &voidFraction})
+    for (scalarField* values : {&mass, &enthalpy, &temperature, &density, &pressure, &voidFraction})
     {
         values->setSize(numbers.cells.size());
     }
@@ -158,6 +158,7 @@ void Foam::calcine::gasState::read
                 pick(mass, *to, theirs.state.mass, from);
                 pick(enthalpy, *to, theirs.state.enthalpy, from);
                 pick(temperature, *to, theirs.state.temperature, from);
+                pick(density, *to, theirs.state.density, from);
                 forAll(composition, k)
                 {
                     pick(composition[k], *to, theirs.state.composition[k], from);

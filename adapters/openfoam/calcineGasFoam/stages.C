@@ -1,6 +1,7 @@
-// The two implicit stages of a window (docs/theory.md, TSM-11), gamma = 1 - 1/sqrt(2). The second is a step over gamma of the
-// window from the start and (1 - gamma)/gamma times what the first changed, in what cells hold.
+// The stages of an attempt, each with an outer loop: one, or the two implicit ones of docs/theory.md (TSM-11), gamma = 1 - 1/sqrt(2). The
+// second is a step over gamma of the window from the start and (1 - gamma)/gamma times what the first changed, in what cells hold.
 #include "gas.H"
+#include "correctionPace.H"
 
 namespace
 {
@@ -44,6 +45,96 @@ void joinFirst(calcine::report& result, const calcine::report& first, scalar amo
 }
 
 } // End anonymous namespace
+
+
+void Foam::calcine::gas::beginStage(const window& when, const scalarField& voidFraction)
+{
+    window_ = when;
+    given_.voidFraction = voidFraction;
+    voidFraction_.primitiveFieldRef() = given_.voidFraction;
+    voidFraction_.correctBoundaryConditions();
+    pressureShare_ = given_.voidFraction;
+    if (takesAllPressure_)
+    {
+        pressureShare_ = 1;
+    }
+    // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
+    modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
+    boundary_.updateState(when.processEnd, pRef_, thermo_->T(), p_);
+    if (species_)
+    {
+        boundary_.updateComposition(when.processEnd, species_->Y());
+    }
+    thermo_->he().correctBoundaryConditions();
+    thermo_->correct();
+    boundary_.updateVelocity(when.processEnd, given_.voidFraction, thermo_->rho()(), U_);
+    modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
+    thermo_->correct();
+    // Without a commit the bed of this attempt says how much gas there is.
+    if (when.index == 0 || !committed_.placed)
+    {
+        place();
+        restore();
+        models_->place(committed_.voidFraction*density());
+    }
+    updateInflow();
+    U_.correctBoundaryConditions();
+    if (oblique_)
+    {
+        const scalarField held(committed_.mass/mesh_.cellVolumes());
+        oldMassGradient_ = massVelocityGradient(held*committed_.velocity, held, committed_.flux);
+        massGradient_ = oldMassGradient_;
+    }
+
+    models_->begin();
+    beginReactions();
+}
+
+
+void Foam::calcine::gas::step(report& result)
+{
+    result = report();
+    correctionPace pace(outer_);
+    for (label outer = 1; outer <= max(outer_.iterations, 1); ++outer)
+    {
+        // The switching of limiters may otherwise lead from one iterate to another and back for ever.
+        share_ = outer > 8 ? 0.5 : 1;
+        updateBasePressure();
+        const scalarField rho(density());
+        setFlux();
+        result.residual = predictVelocity(rho, result);
+        result.residual = max(result.residual, assemblePressure(rho, outer == 1));
+        pace.judge(outer - 1, result.residual);
+        holdFriction();
+        if (oblique_ && outer == 1)
+        {
+            // The gradient that carries pressures along faces is not kept between windows: it follows the fluxes at hand.
+            updateForce();
+            for (label settling = 0; settling < 4; ++settling)
+            {
+                updatePressureAlong(false);
+            }
+        }
+        for (label correction = 0; correction < pace.corrections(); ++correction)
+        {
+            correctPressure(rho, correction == 0, result);
+        }
+        mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
+        setFlux();
+        result.residual = max(result.residual, solveScalars(result.residual, result));
+        guard(true);
+        result.outerIterations = outer;
+        updateProperties();
+        if (result.residual <= outer_.tolerance)
+        {
+            result.converged = true;
+            break;
+        }
+    }
+    closeReactions(result);
+    guard(false);
+    finishReport(result);
+}
 
 
 Foam::calcine::gasState Foam::calcine::gas::beyondFirstStage(scalar beyond) const

@@ -124,7 +124,8 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
          // How gas and particles share the pressure gradient: a or b.\nmomentumModel   {};\n\
          // Seconds of wall time between lines of the log; 0: a line for each attempt.\n\
          logInterval     1;\n\ncontrols\n{{\n    outerIterations     {};\n    \
-         pressureCorrections {};\n    outerTolerance      {:e};\n    linearTolerance     {:e};\n    \
+         pressureCorrections {};\n    mostPressureCorrections {};\n    outerTolerance      {:e};\n    \
+         linearTolerance     {:e};\n    \
          twoStages           {};\n}}\n\n\
          // Tables over process time in s: m/s, kg/s, K, Pa, W/m^2, W/m^2/K.\npatches\n{{\n",
         setup.pressure,
@@ -133,6 +134,7 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
         setup.momentum.name(),
         controls.outer_iterations,
         controls.pressure_corrections,
+        controls.most_pressure_corrections,
         controls.outer_tolerance,
         controls.linear_tolerance.unwrap_or(GasControls::CLOSE),
         controls.time_scheme == TimeScheme::Sdirk2
