@@ -164,7 +164,7 @@ fn hot_above(degrees: f64) -> Driver {
         ("lid", warm_wall(400.0)),
     ]);
     setup.gravity = Vec3::new(0.0, 0.0, -9.81);
-    setup.controls.outer_iterations = 25;
+    setup.controls.outer_iterations = 20;
     setup.controls.outer_tolerance = 1e-8;
     Driver::new(&lean(&mesh, degrees), &setup)
 }
