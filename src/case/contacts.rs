@@ -6,8 +6,8 @@ use calcine_coupler::motion::{
     ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
 };
 use calcine_coupler::periodic_motion::{self, PeriodicMotionError};
-use calcine_coupler::physics::contact::time_step;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::contact::time_step;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 use thiserror::Error;
