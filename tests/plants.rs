@@ -179,6 +179,202 @@ fn a_run_that_was_stopped_or_killed_goes_on_to_the_same_bits() {
     }
 }
 
+/// Compounds and enthalpy of the shipped shaft close in its plant's ledger, where the heat is what the bed's gas gave and
+/// what the bed holds is read off its particles; a run that is killed between checkpoints goes on to the same bits.
+#[test]
+fn a_bed_in_a_plant_closes_and_is_resumed_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("cases/heated-shaft.toml");
+    let settings = [
+        "time.end=16 s",
+        "time.checkpoint={ every = \"4 s\" }",
+        "output.distributions=8 s",
+    ];
+    let [whole, stopped, killed] =
+        ["whole", "stopped", "killed"].map(|name| folder.path().join(name));
+    let output = run(&case, &whole, &settings, &[]);
+    let code = output.status.code();
+    assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
+    let summary = PlantSummary::read(&whole).unwrap();
+    for line in &summary.ledger.lines {
+        assert!(line.relative_error < 1e-10, "{line:?}");
+    }
+    let heat = |what: &str| {
+        let line = summary.ledger.lines.iter();
+        line.filter(|line| line.place == "shaft" && line.what == what)
+            .map(|line| line.heat)
+            .sum::<f64>()
+    };
+    assert!(heat("enthalpy") > 100.0, "{} J", heat("enthalpy"));
+    // What came is half small and half large, within a particle of each.
+    let page = fs::read_to_string(whole.join("report.html")).unwrap();
+    assert!(page.contains("aria-label=\"Flowsheet\""));
+    assert!(whole.join("beds/shaft/summary.json").exists());
+    let output = run(&case, &stopped, &settings, &["--stop-after", "0.7"]);
+    assert_eq!(output.status.code(), Some(75), "{}", said(&output));
+    let mut child = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    child.args(["run", case.to_str().unwrap(), "--quiet", "--out"]);
+    child.arg(&killed);
+    for setting in settings {
+        child.args(["--set", setting]);
+    }
+    let mut child = child.stdout(std::process::Stdio::null()).spawn().unwrap();
+    let saved = killed.join("checkpoint/plant.json");
+    while !saved.exists() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let _ = child.kill();
+    child.wait().unwrap();
+    for out in [&stopped, &killed] {
+        let output = calcine(&["run", "--resume", out.to_str().unwrap(), "--quiet"]);
+        let code = output.status.code();
+        assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
+        for file in ["series.csv", "distributions.csv", "streams.csv"] {
+            let read = |folder: &Path| fs::read(folder.join(file)).unwrap();
+            assert!(read(out) == read(&whole), "{}: {file}", out.display());
+        }
+        let other = PlantSummary::read(out).unwrap();
+        assert_eq!(other.ledger, summary.ledger);
+    }
+    let refused = run(
+        &case,
+        &folder.path().join("from"),
+        &[],
+        &["--from", whole.to_str().unwrap()],
+    );
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        said(&refused).contains("does not go with the bed \"shaft\""),
+        "{}",
+        said(&refused)
+    );
+}
+
+/// The plant's checkpoint and the bed's before it: a run that was killed between the two goes on from that.
+#[test]
+fn a_bed_that_is_ahead_of_its_plant_goes_back_to_the_checkpoint_that_belongs_to_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("cases/heated-shaft.toml");
+    let settings = ["time.end=12 s", "time.checkpoint={ every = \"4 s\" }"];
+    let [whole, part] = ["whole", "part"].map(|name| folder.path().join(name));
+    run(&case, &whole, &settings, &[]);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    child.args(["run", case.to_str().unwrap(), "--quiet", "--out"]);
+    child.arg(&part);
+    for setting in settings {
+        child.args(["--set", setting]);
+    }
+    let mut child = child.stdout(std::process::Stdio::null()).spawn().unwrap();
+    let before = part.join("beds/shaft/checkpoint.before");
+    let saved = part.join("checkpoint/plant.json");
+    let mut first = None;
+    while !before.exists() && child.try_wait().unwrap().is_none() {
+        first = fs::read(&saved).ok().or(first);
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let _ = child.kill();
+    child.wait().unwrap();
+    // As if the kill had come before the plant wrote its second checkpoint.
+    fs::write(&saved, first.unwrap()).unwrap();
+    let output = calcine(&["run", "--resume", part.to_str().unwrap(), "--quiet"]);
+    let code = output.status.code();
+    assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
+    let read = |folder: &Path| fs::read(folder.join("series.csv")).unwrap();
+    assert!(read(&part) == read(&whole));
+}
+
+/// Twin data of the shipped case, made here: the growth and the kernel that they were made with are found, and the
+/// derivatives are those between runs on both sides.
+#[test]
+fn a_tuning_finds_a_known_growth_and_kernel_from_twin_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = root().join("cases/granulation-tuning.toml");
+    let keys = [
+        "units.granulator.granulator.growth.linear",
+        "units.granulator.granulator.aggregation.rate",
+    ];
+    let truth = folder.path().join("truth");
+    let at = [
+        format!("{}=2 mm", keys[0]),
+        format!("{}=1e-11 1/s", keys[1]),
+    ];
+    let settings = [at[0].as_str(), &at[1], "method.tolerance=1e-9"];
+    let output = run(&shipped, &truth, &settings, &[]);
+    assert!(output.status.success(), "{}", said(&output));
+    let table = fs::read_to_string(truth.join("distributions.csv")).unwrap();
+    let mut rows = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let head = rows.next().unwrap();
+    let edges = head[2..]
+        .iter()
+        .map(|edge| edge[3..edge.len() - 2].to_owned());
+    // Every tenth edge of the size classes is a sieve.
+    let picked: Vec<usize> = (9..edges.len()).step_by(10).collect();
+    let edges: Vec<String> = edges.collect();
+    let mut data = String::from("time_s");
+    picked
+        .iter()
+        .for_each(|k| data.push_str(&format!(", {} m", edges[*k])));
+    data.push('\n');
+    for row in rows.filter(|row| row[1] == "streams.discharge" && row[0] != "0.0") {
+        let masses: Vec<f64> = row[2..].iter().map(|m| m.parse().unwrap()).collect();
+        let all: f64 = masses.iter().sum();
+        data.push_str(row[0]);
+        for k in &picked {
+            let below: f64 = masses[..=*k].iter().sum();
+            data.push_str(&format!(", {:.4}", below / all));
+        }
+        data.push('\n');
+    }
+    fs::write(folder.path().join("granulation-tuning.csv"), data).unwrap();
+    let text = fs::read_to_string(&shipped).unwrap();
+    let text = text.replace("samples = 8", "samples = 3");
+    let case = folder.path().join("twin.toml");
+    fs::write(&case, text).unwrap();
+    let out = folder.path().join("tuned");
+    let words = [
+        "tune",
+        case.to_str().unwrap(),
+        "--quiet",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    let output = calcine(&words);
+    assert!(output.status.success(), "{}", said(&output));
+    let summary = PlantSummary::read(&out).unwrap();
+    let found = summary.tuning.unwrap();
+    for (one, truth) in found.parameters.iter().zip([2.0, 1e-11]) {
+        assert!((one.value / truth - 1.0).abs() < 1e-2, "{one:?}");
+        assert!(one.interval[0] < one.value && one.value < one.interval[1]);
+    }
+    let mean = |value: &str, name: &str| {
+        let own = folder.path().join(name);
+        let growth = format!("{}={value} mm", keys[0]);
+        let settings = [growth.as_str(), &at[1], "method.tolerance=1e-9"];
+        run(&shipped, &own, &settings, &[]);
+        PlantSummary::read(&own).unwrap().quantities["discharge_mean"]
+            .value
+            .unwrap()
+    };
+    let slope = (mean("2.02", "above") - mean("1.98", "below")) / 0.04;
+    let told = found
+        .sensitivities
+        .iter()
+        .find(|one| one.quantity == "discharge_mean")
+        .unwrap();
+    assert!(
+        (told.by[0] / slope - 1.0).abs() < 5e-3,
+        "{} {slope}",
+        told.by[0]
+    );
+    assert!(
+        said(&output).contains("d discharge_mean / d units.granulator"),
+        "{}",
+        said(&output)
+    );
+}
+
 #[test]
 fn both_methods_of_recycles_agree_within_a_millionth() {
     let folder = tempfile::tempdir().unwrap();
@@ -207,6 +403,47 @@ fn both_methods_of_recycles_agree_within_a_millionth() {
     let words = ["compare", case.to_str().unwrap(), "--results", &results];
     let again = calcine(&words);
     assert!(again.status.success(), "{}", said(&again));
+}
+
+/// The plant of every unit by windows at a tolerance of 1e-8.
+#[test]
+fn windows_agree_with_closed_recycles_on_every_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let windows = root().join("tests/inputs/plants/good/every-unit.toml");
+    let text = fs::read_to_string(&windows).unwrap();
+    let (head, rest) = text.split_once("[method.waveform]").unwrap();
+    let rest = rest.split_once("\n[").unwrap().1;
+    let closed = folder.path().join("closed.toml");
+    fs::write(&closed, format!("{head}[{rest}")).unwrap();
+    let of = |name: &str, settings: &[&str]| {
+        let out = folder.path().join(name);
+        let all = [&["method.tolerance=1e-8", "time.end=2 s"], settings].concat();
+        let case = if name == "monolithic" {
+            &closed
+        } else {
+            &windows
+        };
+        let output = run(case, &out, &all, &[]);
+        let code = output.status.code();
+        assert!(
+            [Some(0), Some(5)].contains(&code),
+            "{name}: {}",
+            said(&output)
+        );
+        let summary = PlantSummary::read(&out).unwrap();
+        let tears = &summary.ledger.tears;
+        assert!(
+            !tears.is_empty() && tears.values().all(|apart| *apart <= 1e-12),
+            "{tears:?}"
+        );
+        let values = summary.quantities.into_values();
+        values.map(|one| one.value.unwrap()).collect::<Vec<f64>>()
+    };
+    let closed = of("monolithic", &["method.recycles=monolithic"]);
+    let found = of("waveform", &["method.recycles=waveform"]);
+    for (one, other) in found.iter().zip(&closed) {
+        assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
+    }
 }
 
 /// A long run of a screen that is flat enough ends in the steady state that Newton's iteration finds, whose dominant mode
@@ -243,27 +480,37 @@ fn a_long_run_ends_in_the_steady_state_and_another_begins_there() {
     assert!(steady.distance < 1e-8, "{}", steady.distance);
 }
 
-/// A mill of a given power that gets nothing.
+/// Each case of the folder says in its first line what its run ends with.
 #[test]
 fn what_fails_in_time_is_told_with_its_place_and_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
-    let text = fs::read_to_string(root().join("tests/inputs/plants/good/recycle.toml")).unwrap();
-    let (from, to) = (
-        "law = \"constant\", mean = \"1 mm\", deviation = \"0.1 mm\"",
-        "law = \"bond-normal\", work_index = \"10 kWh/t\", power = \"1 kW\", deviation = \"0.1 mm\"",
-    );
-    assert!(text.contains(from));
-    // Nothing at all is coarse.
-    let changed = text.replace(from, to).replace(
-        "law = \"plitt\", cut = \"2 mm\", sharpness = 8",
-        "law = \"probability\", mean = \"100 mm\", deviation = \"1 mm\"",
-    );
-    let case = folder.path().join("idle.toml");
-    fs::write(&case, changed).unwrap();
-    let output = run(&case, &folder.path().join("idle"), &[], &[]);
-    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
-    let told = "no solids flow into mill \"mill\"";
-    assert!(said(&output).contains(told), "{}", said(&output));
+    let all = files("tests/inputs/plants/stops");
+    assert!(all.len() >= 5);
+    for case in all {
+        let text = fs::read_to_string(&case).unwrap();
+        let wanted = text
+            .lines()
+            .next()
+            .and_then(|line| line.strip_prefix("#! "));
+        let wanted = wanted.unwrap_or_else(|| panic!("{} has no message", case.display()));
+        let out = folder.path().join(case.file_stem().unwrap());
+        let output = run(&case, &out, &[], &[]);
+        assert_eq!(
+            output.status.code(),
+            Some(3),
+            "{}: {}",
+            case.display(),
+            said(&output)
+        );
+        assert!(
+            said(&output).contains(wanted),
+            "{}: {}",
+            case.display(),
+            said(&output)
+        );
+        // Fact, and what to do.
+        assert!(said(&output).contains("; "), "{}", said(&output));
+    }
 }
 
 #[test]

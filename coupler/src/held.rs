@@ -1,7 +1,6 @@
 //! A gas that stays as it is, whatever the particles give it: to see what a given flow does to them.
 
 use std::path::Path;
-use std::time::Duration;
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
@@ -76,14 +75,6 @@ impl Part for HeldGas {
     }
 
     fn checkpoint(&mut self, _directory: &Path) -> Result<(), PartError> {
-        Ok(())
-    }
-
-    fn processor_time(&self) -> Duration {
-        Duration::ZERO
-    }
-
-    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
         Ok(())
     }
 }

@@ -271,7 +271,12 @@ fn a_particle_five_times_larger_than_a_cell_loses_no_volume_and_leaves_gas() {
     let at = Vec3::new(4.4e-3, 4.7e-3, 4.5e-3);
     let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
     let smoother = Smoother::new(&mesh, settings()).unwrap();
-    for method in [Method::Centroid, Method::Divided, Method::Overlap] {
+    for method in [
+        Method::Centroid,
+        Method::Divided,
+        Method::Overlap,
+        Method::Linear,
+    ] {
         let weights = Mapper::new(&mesh).fill(method, &[at], &[radius]).unwrap();
         let operator = smoother.operator(weights, &[volume]).unwrap();
         let alpha = operator.solid_fraction();

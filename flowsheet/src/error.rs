@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::signal::SignalKind;
+
 /// What is wrong with a plant, or stops its computation. Each says the fact, the number, the place and the remedy.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PlantError {
@@ -54,6 +56,17 @@ pub enum PlantError {
     /// A unit that is not there.
     #[error("no unit is named \"{0}\"; the units are {1}")]
     UnknownUnit(String, String),
+    /// A stream that is not there.
+    #[error("no stream is named \"{0}\"; the streams are {1}")]
+    UnknownStream(String, String),
+    /// A stream that a recycle cannot be torn at.
+    #[error("recycles torn at stream \"{stream}\": {why}")]
+    Tear {
+        /// Stream.
+        stream: String,
+        /// What is wrong with it, and what to do.
+        why: &'static str,
+    },
     /// A port that is not there.
     #[error("unit \"{unit}\" has no port \"{port}\"; its ports of that kind are {ports}")]
     UnknownPort {
@@ -92,7 +105,7 @@ pub enum PlantError {
     },
     /// A recycle that does not converge.
     #[error(
-        "recycle through stream {stream} does not converge at {time} s: residual {residual:.3e} of its flow after {iterations} iterations, largest in {grows}; the recycle gains more than leaves the plant, check screens and splitters within it"
+        "recycle through stream {stream} does not converge at {time} s after {iterations} iterations: {grows}; the recycle gains more than leaves the plant, check screens and splitters within it"
     )]
     Recycle {
         /// Tear stream, as "unit.port -> unit.port".
@@ -103,8 +116,40 @@ pub enum PlantError {
         residual: f64,
         /// Iterations done.
         iterations: usize,
-        /// What has the largest residual.
+        /// What grew, or has the largest residual, in words.
         grows: String,
+    },
+    /// A unit that takes signals of one that gives none of these.
+    #[error(
+        "unit \"{unit}\" takes {wanted} from unit \"{from}\", which gives none; name a unit that does"
+    )]
+    Signals {
+        /// Unit that takes them.
+        unit: String,
+        /// Unit that is asked.
+        from: String,
+        /// What it needs.
+        wanted: SignalKind,
+    },
+    /// A bed that cannot be followed.
+    #[error("bed \"{unit}\" at {time} s: {cause}")]
+    Bed {
+        /// Unit.
+        unit: String,
+        /// Time in s.
+        time: f64,
+        /// Why, with what to do.
+        cause: String,
+    },
+    /// What a plant with a coupled bed does not have.
+    #[error(
+        "bed \"{unit}\" exchanges with the plant from time to time: {what}; put a granulator or a bunker in its place"
+    )]
+    CoupledInTime {
+        /// Unit.
+        unit: String,
+        /// What cannot be.
+        what: &'static str,
     },
     /// A number that is not finite.
     #[error(

@@ -1,5 +1,10 @@
 //! What every unit of a plant is.
 
+use std::ops::Range;
+
+use crate::coupled_bed::{BedCoupling, BedExchange};
+use crate::measured_place::MeasuredPlace;
+use crate::signal::SignalKind;
 use crate::{PlantError, StreamLayout};
 
 /// What a unit sees at a time.
@@ -18,6 +23,11 @@ pub struct UnitView<'a> {
     /// All streams of the plant, and which of them flow into this unit, port by port.
     pub(crate) streams: &'a [f64],
     pub(crate) inlets: &'a [usize],
+    /// Signals of all units, and where those stand that this unit takes.
+    pub(crate) signals: &'a [f64],
+    pub(crate) heard: &'a [Range<usize>],
+    /// What it measures: a stream, or what another unit holds; empty for others.
+    pub measured: &'a [f64],
 }
 
 impl<'a> UnitView<'a> {
@@ -26,6 +36,11 @@ impl<'a> UnitView<'a> {
         let width = self.layout.width();
         let start = self.inlets[port] * width;
         &self.streams[start..start + width]
+    }
+
+    /// The signals of a unit that this one takes, in the order of [`ProcessUnit::listens_to`].
+    pub fn signal(&self, place: usize) -> &'a [f64] {
+        &self.signals[self.heard[place].clone()]
     }
 
     /// All streams in, in the order of the ports.
@@ -108,4 +123,38 @@ pub trait ProcessUnit: Send + Sync {
     fn next_break(&self, _time: f64) -> Option<f64> {
         None
     }
+
+    /// What its signals are, and how many: numbers that other units take from it. They follow from its unknowns alone.
+    fn signals(&self) -> Option<(SignalKind, usize)> {
+        None
+    }
+
+    /// Its signals.
+    fn signal(&self, _layout: &StreamLayout, _state: &[f64], _out: &mut [f64]) {}
+
+    /// Names of the units whose signals it takes, each with what it needs.
+    fn listens_to(&self) -> Vec<(String, SignalKind)> {
+        Vec::new()
+    }
+
+    /// The stream that it measures, or the unit whose content it measures; its rates see it.
+    fn watches(&self) -> Option<&MeasuredPlace> {
+        None
+    }
+
+    /// Of a unit that stands for a bed that is computed elsewhere: how it is exchanged.
+    fn coupling(&self) -> Option<BedCoupling> {
+        None
+    }
+
+    /// Of such a unit: what waits to be fed in kg and J, and what each feed owes in kg.
+    fn waiting(&self, _layout: &StreamLayout, _state: &[f64]) -> [Vec<f64>; 2] {
+        [Vec::new(), Vec::new()]
+    }
+
+    /// Of such a unit: takes what the bed holds at the start.
+    fn fill(&self, _layout: &StreamLayout, _content: &[f64], _state: &mut [f64]) {}
+
+    /// Of such a unit: takes what came of an exchange.
+    fn exchanged(&self, _layout: &StreamLayout, _done: &BedExchange, _state: &mut [f64]) {}
 }

@@ -60,9 +60,7 @@ fn splitter_and_mixer_divide_and_add() {
     let layout = plain(grid.clone());
     let shares = normal_shares(&grid, 15e-3, 1e-3, "feed").unwrap();
     let feed = solids(&layout, &shares, 10.0);
-    let splitter = Splitter {
-        shares: vec![0.75, 0.25],
-    };
+    let splitter = Splitter::new(vec![0.75, 0.25]);
     let plant = alone(layout, splitter, feed, linear(&[(0.0, 1.0), (60.0, 0.75)]));
     let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-8).unwrap();
     for (time, expected) in [(0.0, [7.5, 2.5]), (60.0, [5.625, 1.875])] {
@@ -348,9 +346,7 @@ fn a_circuit_with_a_delay_has_dyssols_flows() {
         content: Vec::new(),
     };
     let mill = Mill::new(Box::new(ConstantMill::new(1e-3, 1.5e-4)));
-    let splitter = Splitter {
-        shares: vec![0.5, 0.5],
-    };
+    let splitter = Splitter::new(vec![0.5, 0.5]);
     let units: Vec<(String, Box<dyn ProcessUnit>)> = vec![
         ("Inlet".into(), Box::new(PlantInlet::new(feed, enters))),
         ("Mixer".into(), Box::new(Mixer { inlets: 2 })),

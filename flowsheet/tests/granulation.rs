@@ -132,7 +132,7 @@ fn the_granulation_plant_has_its_converged_figures() {
             run.rounds()
         );
         let ledger = run.ledger();
-        assert!(ledger.closure <= 1e-12);
+        assert!(ledger.closure() <= 1e-12);
         assert!(ledger.worst() < 1e-11, "{:#?}", ledger.lines);
         all.push(found);
     }

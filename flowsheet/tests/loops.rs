@@ -117,7 +117,7 @@ fn a_screen_and_a_mill_recycle_what_a_geometric_series_says() {
         run.rounds()
     );
     assert!((found / expected - 1.0).abs() < 1e-10, "{found} {expected}");
-    assert!(run.ledger().closure <= 1e-12);
+    assert!(run.ledger().closure() <= 1e-12);
     assert!(run.rounds() < 20, "{}", run.rounds());
 }
 
@@ -147,7 +147,7 @@ fn a_recycle_through_bonds_law_closes_and_conserves() {
         },
     );
     let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-8).unwrap();
-    assert!(run.ledger().closure <= 1e-12);
+    assert!(run.ledger().closure() <= 1e-12);
     run.advance(100.0).unwrap();
     let ledger = run.ledger();
     assert!(ledger.worst() < 1e-12, "{:#?}", ledger.lines);

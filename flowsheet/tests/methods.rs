@@ -22,14 +22,14 @@ fn both_methods_of_recycles_agree_and_close() {
         let ledger = run.ledger();
         println!(
             "{acceleration:?}: apart {apart:e} kg of 20, closure {:e}, ledger {:e}, rounds {} of {}, next window {} s",
-            ledger.closure,
+            ledger.closure(),
             ledger.worst(),
             run.rounds(),
             whole.rounds(),
             run.checkpoint().window,
         );
         assert!(apart / 20.0 < 1e-6);
-        assert!(ledger.closure <= 1e-12);
+        assert!(ledger.closure() <= 1e-12);
     }
 }
 
@@ -56,7 +56,7 @@ fn a_resumed_stabilised_run_has_the_same_bits() {
     run.advance(300.0).unwrap();
     let saved = run.checkpoint();
     run.advance(900.0).unwrap();
-    assert!(run.ledger().closure <= 1e-12 && run.ledger().worst() < 1e-11);
+    assert!(run.ledger().closure() <= 1e-12 && run.ledger().worst() < 1e-11);
     let mut other = PlantRun::new(&plant, Integrator::Stabilised, 1e-4).unwrap();
     other.resume(saved);
     other.advance(900.0).unwrap();

@@ -121,12 +121,12 @@ fn a_sharp_screen_makes_a_limit_cycle() {
         println!(
             "{integrator:?}: peak to peak {height} mm, period {period} s; steps {:?}, closure {:e}, ledger {:e}",
             run.steps(),
-            ledger.closure,
+            ledger.closure(),
             ledger.worst()
         );
         assert!((height / 0.832 - 1.0).abs() < 0.02);
         assert!((period / 1142.0 - 1.0).abs() < 0.02);
-        assert!(ledger.closure <= 1e-12 && ledger.worst() < 1e-11);
+        assert!(ledger.closure() <= 1e-12 && ledger.worst() < 1e-11);
         found.push([height, period]);
     }
     for k in 0..2 {
@@ -149,7 +149,7 @@ fn a_disturbed_bed_that_aggregates_is_followed_alike_by_both() {
             run.steps(),
             ledger.worst()
         );
-        assert!(ledger.closure <= 1e-12 && ledger.worst() < 1e-11);
+        assert!(ledger.closure() <= 1e-12 && ledger.worst() < 1e-11);
         ends.push(run.unknowns().to_vec());
     }
     let pairs = ends[0].iter().zip(&ends[1]);

@@ -143,9 +143,7 @@ fn a_delay_passes_a_step_on_after_its_time() {
 fn a_splitter_divides_everything_alike() {
     let layout = plain(SizeGrid::uniform(4, 0.0, 4e-3).unwrap());
     let feed = solids(&layout, &[0.1, 0.2, 0.3, 0.4], 2.0);
-    let splitter = Splitter {
-        shares: vec![0.75, 0.25],
-    };
+    let splitter = Splitter::new(vec![0.75, 0.25]);
     let plant = alone(layout, splitter, vec![always(feed.clone())]);
     let run = PlantRun::new(&plant, Integrator::Explicit, 1e-9).unwrap();
     for (part, whole) in flow(&plant, &run, "out1").iter().zip(&feed) {

@@ -25,6 +25,7 @@ mod multigrid;
 mod numerics;
 mod openings;
 mod parcel_beds;
+mod parcel_fluidised;
 mod parcel_packing;
 mod parcel_tracking;
 mod planted;

@@ -182,5 +182,6 @@ pub(super) fn method(case: &Case) -> Method {
         MappingSpec::Centroid => Method::Centroid,
         MappingSpec::Divided => Method::Divided,
         MappingSpec::Overlap => Method::Overlap,
+        MappingSpec::Linear => Method::Linear,
     }
 }

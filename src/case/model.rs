@@ -251,6 +251,8 @@ pub enum MappingSpec {
     Divided,
     /// Exact volume of the sphere in each cell.
     Overlap,
+    /// Linear weights of the centre in the tetrahedra of the mesh.
+    Linear,
 }
 
 /// What only an external solver needs.

@@ -230,6 +230,7 @@ case_words! {
         "overlap" => MappingSpec::Overlap,
         "divided" => MappingSpec::Divided,
         "centroid" => MappingSpec::Centroid,
+        "linear" => MappingSpec::Linear,
     }
     StockSolver {
         "calcineGasFoam" => StockSolver::CalcineGasFoam,

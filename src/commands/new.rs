@@ -42,6 +42,10 @@ enum Shipped {
     GranulationPlant,
     /// Plant: a granulator and a mill that oscillate.
     GranulationOscillation,
+    /// Plant: growth and aggregation found from sieve analyses.
+    GranulationTuning,
+    /// Plant: beads heated in a shaft that is computed particle by particle.
+    HeatedShaft,
 }
 
 impl Shipped {
@@ -57,6 +61,8 @@ impl Shipped {
             Shipped::GranulationOscillation => {
                 include_str!("../../cases/granulation-oscillation.toml")
             }
+            Shipped::GranulationTuning => include_str!("../../cases/granulation-tuning.toml"),
+            Shipped::HeatedShaft => include_str!("../../cases/heated-shaft.toml"),
         }
     }
 
@@ -65,6 +71,14 @@ impl Shipped {
         match self {
             Shipped::TgLaws => Some(("tg-laws.csv", include_str!("../../cases/tg-laws.csv"))),
             Shipped::TgTuning => Some(("tg-tuning.csv", include_str!("../../cases/tg-tuning.csv"))),
+            Shipped::GranulationTuning => Some((
+                "granulation-tuning.csv",
+                include_str!("../../cases/granulation-tuning.csv"),
+            )),
+            Shipped::HeatedShaft => Some((
+                "heated-shaft-bed.toml",
+                include_str!("../../cases/heated-shaft-bed.toml"),
+            )),
             _ => None,
         }
     }
@@ -73,7 +87,10 @@ impl Shipped {
     fn kind(self) -> (&'static str, &'static str) {
         match self {
             Shipped::TgLaws | Shipped::TgTuning => ("tuning", "tune"),
-            Shipped::GranulationPlant | Shipped::GranulationOscillation => ("flowsheet", "run"),
+            Shipped::GranulationTuning => ("flowsheet", "tune"),
+            Shipped::GranulationPlant | Shipped::GranulationOscillation | Shipped::HeatedShaft => {
+                ("flowsheet", "run")
+            }
             _ => ("bed", "run"),
         }
     }

@@ -141,6 +141,69 @@ pub(super) fn run(
     Ok(code)
 }
 
+/// `calcine tune` of a plant: fits its keys, then runs it with what was found.
+pub(super) fn tune(
+    case_file: &Path,
+    set: &[String],
+    out: Option<&Path>,
+    quiet: bool,
+) -> Result<u8, Failure> {
+    let case = read(case_file, set)?;
+    let Some(spec) = &case.tuning else {
+        return refused(format_args!(
+            "{} has no table [tuning]: add one with the keys and the measurements (docs/how-to/plant-with-a-recycle.md)",
+            case_file.display()
+        ));
+    };
+    if let Some(bed) = case.beds.first() {
+        return refused(format_args!(
+            "a plant with a bed (\"{}\") is not tuned: put a granulator with its kernel in the bed's place",
+            bed.unit
+        ));
+    }
+    for change in &case.changes {
+        say(format_args!("set {change}"))?;
+    }
+    // Every key is tried at its bounds before the first run.
+    for key in &spec.parameters {
+        for bound in key.bounds {
+            read(case_file, &[set, &[key.setting(bound)]].concat())?;
+        }
+    }
+    let out = folder(&case, out);
+    if out.join(crate::results::SUMMARY).exists() {
+        return refused(format_args!(
+            "{} holds results: name another folder with `--out`",
+            out.display()
+        ));
+    }
+    let interrupts = Interrupts::default();
+    let signals = SignalThread::start(&interrupts, None)?;
+    let found = crate::plant::tune::tune_plant(&case, spec, &out, &interrupts);
+    drop(signals);
+    let found = found.map_err(|error| match error {
+        calcine_tuning::TuningError::Interrupted => Failure::new(
+            exit::OTHER,
+            "interrupted; a tuning of a plant begins again from its start",
+        ),
+        error => Failure::new(exit::DIVERGED, error),
+    })?;
+    let best = found.parameters.iter().zip(&spec.parameters);
+    let best: Vec<String> = best.map(|(one, key)| key.setting(one.value)).collect();
+    let tuned = read(case_file, &[set, &best].concat())?;
+    let go_on = begin_again("tuning", &out);
+    let (code, summary) = into_folder(&tuned, &out, None, quiet, &go_on)?;
+    if let Some(mut summary) = summary {
+        summary.tuning = Some(found);
+        let failed = |error: crate::results::ResultsError| Failure::told(exit::OTHER, &error);
+        summary.replace(&out).map_err(failed)?;
+        let page = write_plant_report(&out);
+        say(plant_closing(&summary))?;
+        say(format_args!("report: {}", page.map_err(failed)?.display()))?;
+    }
+    Ok(code)
+}
+
 /// `calcine check` of a plant.
 pub(super) fn check(arguments: &check::Arguments) -> Result<u8, Failure> {
     let case = read(&arguments.case, &arguments.set)?;

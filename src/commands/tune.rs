@@ -13,8 +13,8 @@ use super::console::say;
 use super::continuation::Recorded;
 use super::failure::Failure;
 use super::shell::word;
-use crate::case::read_tuning;
 use crate::case::units::short;
+use crate::case::{kind_of, read_tuning};
 use crate::exit;
 use crate::report::number::figure;
 use crate::results::{ResultsError, files};
@@ -27,7 +27,7 @@ use crate::tuning::write::{EvaluationLog, state, write, write_state};
 /// Tunes the parameters of a model to curves, with intervals, and compares kinetic laws.
 #[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
-    /// The case file, of kind "tuning"; with `--resume DIR` that of the tuning in DIR, if none is named.
+    /// The case file, of kind "tuning", or "flowsheet" with a table [tuning]; with `--resume DIR` that of the tuning in DIR, if none is named.
     #[arg(required_unless_present = "resume")]
     case: Option<PathBuf>,
     /// Results folder [default: results/NAME].
@@ -59,6 +59,15 @@ pub(super) struct Tuning<'a> {
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     super::run::use_threads(arguments.threads.map(usize::from))?;
     let given = |case: &Path, set: &[String], out: Option<&Path>, resume| {
+        let kind = kind_of(case, set);
+        let kind = kind.map_err(|wrong| Failure::new(exit::CASE, wrong.render()))?;
+        if kind.name == "flowsheet" {
+            if resume {
+                let message = "a tuning of a plant is not resumed: leave `--resume` out";
+                return Err(Failure::new(exit::CASE, message));
+            }
+            return super::plant::tune(case, set, out, arguments.quiet);
+        }
         tune(&Tuning {
             case,
             set,

@@ -34,8 +34,11 @@ pub(super) struct PlantCheckpoint {
     streams: Vec<f64>,
     step: f64,
     window: f64,
-    closure: f64,
+    closures: Vec<f64>,
     held: Vec<Vec<f64>>,
+    /// Windows of each bed.
+    #[serde(default)]
+    beds: Vec<u64>,
 }
 
 /// How far the files of a run are written.
@@ -50,6 +53,8 @@ pub(super) struct Written {
     pub next_distributions: f64,
     /// Wall time so far in s.
     pub wall: f64,
+    /// Windows of each bed.
+    pub beds: Vec<u64>,
 }
 
 impl PlantCheckpoint {
@@ -69,9 +74,15 @@ impl PlantCheckpoint {
             streams: step.streams,
             step: step.step,
             window: step.window,
-            closure: step.closure,
+            closures: step.closures,
             held: step.held,
+            beds: written.beds.clone(),
         }
+    }
+
+    /// Windows of each bed.
+    pub fn beds(&self) -> &[u64] {
+        &self.beds
     }
 
     /// What the run goes on from.
@@ -83,7 +94,7 @@ impl PlantCheckpoint {
             streams: self.streams,
             step: self.step,
             window: self.window,
-            closure: self.closure,
+            closures: self.closures,
             held: self.held,
         }
     }

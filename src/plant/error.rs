@@ -20,6 +20,11 @@ pub enum PlantRunError {
     /// A results folder that cannot be used.
     #[error(transparent)]
     Folder(#[from] SimulationError),
+    /// A state that a bed is no part of.
+    #[error(
+        "`--from` does not go with the bed \"{0}\", which begins as its case says: leave `--from` out"
+    )]
+    FromWithBed(String),
     /// A state of another plant.
     #[error(
         "the plant in {folder} has {found} unknowns, this one has {own}: `--from` takes the state of a plant with the same units, sizes and compounds"
@@ -41,7 +46,7 @@ impl PlantRunError {
             Self::Plant(_) => exit::DIVERGED,
             Self::Results(ResultsError::File { .. }) => exit::OTHER,
             Self::Folder(error) => error.exit_code(),
-            Self::Results(_) | Self::OtherPlant { .. } => exit::CASE,
+            Self::Results(_) | Self::OtherPlant { .. } | Self::FromWithBed(_) => exit::CASE,
         }
     }
 

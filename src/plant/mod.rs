@@ -1,6 +1,8 @@
 //! Plants: a case of kind `flowsheet` run into a results folder.
 
+mod bed;
 mod checkpoint;
+mod collisions;
 pub(crate) mod compare;
 mod drawing;
 mod error;
@@ -15,9 +17,13 @@ mod steady;
 mod store;
 mod summary;
 mod tell;
+pub(crate) mod tune;
 
 pub use error::PlantRunError;
 pub use report::write_plant_report;
 pub use run::{PlantEnding, PlantStart, run_plant};
-pub use summary::{PlantContinuationSummary, PlantLedgerSummary, PlantSteadySummary, PlantSummary};
+pub use summary::{
+    PlantContinuationSummary, PlantLedgerSummary, PlantSensitivity, PlantSteadySummary,
+    PlantSummary, PlantTunedParameter, PlantTuningSummary,
+};
 pub use tell::{plant_check, plant_closing};

@@ -5,8 +5,8 @@ mod flowsheet;
 use std::path::{Path, PathBuf};
 
 use super::files::{Distributions, TimeTable, distributions};
-use super::summary::{PlantMode, PlantSummary};
-use crate::case::plant::{PlantCase, read_plant};
+use super::summary::{PlantMode, PlantSummary, PlantTuningSummary};
+use crate::case::plant::{PlantCase, read_plant_results};
 use crate::report::REPORT;
 use crate::report::colour;
 use crate::report::number::{figure, span, with_unit};
@@ -28,8 +28,8 @@ pub fn write_plant_report(directory: &Path) -> Result<PathBuf, ResultsError> {
     let series = TimeTable::series(directory)?;
     let kept = directory.join(CASE);
     let text = files::read(&kept)?;
-    let case =
-        read_plant(&kept, &[]).map_err(|wrong| ResultsError::content(&kept, wrong.to_string()))?;
+    let case = read_plant_results(&kept)
+        .map_err(|wrong| ResultsError::content(&kept, wrong.to_string()))?;
     let kicker = format!(
         "{} · {} units · {} streams",
         summary.case.name,
@@ -44,6 +44,13 @@ pub fn write_plant_report(directory: &Path) -> Result<PathBuf, ResultsError> {
         "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows. Torn streams are broken.",
         &flowsheet::draw(&case, &series, &summary),
     );
+    if let Some(found) = &summary.tuning {
+        page.section(
+            "Tuned keys",
+            "Keys that were fitted to measurements, each with its interval, and how the quantities depend on them.",
+            &tuned(found),
+        );
+    }
     page.section("Over time", "", &plots(&summary, &series, &case));
     let (edges, places) = distributions(directory)?;
     page.section(
@@ -142,6 +149,47 @@ fn quantities(summary: &PlantSummary) -> String {
         })
         .collect();
     table(&["quantity", "#value", "#expected", "verdict"], &rows)
+}
+
+/// Keys with their intervals, and derivatives of quantities.
+fn tuned(found: &PlantTuningSummary) -> String {
+    let keys: Vec<Vec<String>> = found
+        .parameters
+        .iter()
+        .map(|one| {
+            let [low, high] = one.interval.map(|end| figure(end, 5));
+            vec![
+                escape(&one.key),
+                with_unit(one.value, 6, &one.unit),
+                format!("{low} … {high}"),
+                format!(
+                    "{} … {}",
+                    figure(one.bounds[0], 5),
+                    figure(one.bounds[1], 5)
+                ),
+            ]
+        })
+        .collect();
+    let head = ["key", "#value", "#interval", "#bounds"];
+    let mut html = table(&head, &keys);
+    let slopes: Vec<Vec<String>> = found
+        .sensitivities
+        .iter()
+        .flat_map(|one| {
+            found.parameters.iter().zip(&one.by).map(|(key, slope)| {
+                let per = if key.unit.is_empty() { "1" } else { &key.unit };
+                vec![
+                    escape(&one.quantity.replace('_', " ")),
+                    escape(&key.key),
+                    format!("{} {} per {per}", figure(*slope, 4), one.unit),
+                ]
+            })
+        })
+        .collect();
+    if !slopes.is_empty() {
+        html.push_str(&table(&["quantity", "key", "#derivative"], &slopes));
+    }
+    html
 }
 
 /// Flows of all streams, diameters of what units hold, and of the streams that leave the plant.
@@ -383,7 +431,7 @@ fn streams(case: &PlantCase, series: &TimeTable) -> String {
 }
 
 fn ledger(summary: &PlantSummary) -> String {
-    let rows: Vec<_> = summary
+    let mut rows: Vec<_> = summary
         .ledger
         .lines
         .iter()
@@ -404,10 +452,12 @@ fn ledger(summary: &PlantSummary) -> String {
             ]
         })
         .collect();
-    let closure = format!(
-        "<p class=\"note\">The largest difference of a torn stream from itself is {} of its flow.</p>",
-        figure(summary.ledger.loop_closure, 2)
-    );
+    for (stream, apart) in &summary.ledger.tears {
+        let mut row = vec![escape(stream), "torn stream against itself".into()];
+        row.extend(std::iter::repeat_n(String::from("–"), 4));
+        row.push(figure(*apart, 2));
+        rows.push(row);
+    }
     let head = [
         "unit",
         "balance",
@@ -417,5 +467,5 @@ fn ledger(summary: &PlantSummary) -> String {
         "#heat",
         "#relative error",
     ];
-    closure + &table(&head, &rows)
+    table(&head, &rows)
 }

@@ -2,11 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use calcine_coupler::supervisor::Interrupts;
-use calcine_flowsheet::{PlantError, PlantRun};
+use calcine_flowsheet::{CoupledBed, PlantError, PlantRun};
 
+use super::bed::{self, BedOfPlant, PlantBed, SharedBed};
 use super::checkpoint::{PlantCheckpoint, Written};
 use super::error::PlantRunError;
 use super::files::{
@@ -64,6 +66,23 @@ struct Driven<'a> {
     before: f64,
     begun: Instant,
     from: Option<String>,
+    /// Beds that are cases of their own, in the order of the case.
+    beds: Vec<SharedBed>,
+}
+
+/// Gives a run its beds.
+fn couple(run: &mut PlantRun<'_>, beds: Vec<PlantBed>) -> Result<Vec<SharedBed>, PlantError> {
+    let beds: Vec<SharedBed> = beds
+        .into_iter()
+        .map(|bed| Arc::new(Mutex::new(bed)))
+        .collect();
+    if !beds.is_empty() {
+        let own = beds
+            .iter()
+            .map(|bed| -> Box<dyn CoupledBed> { Box::new(BedOfPlant(Arc::clone(bed))) });
+        run.couple(own.collect())?;
+    }
+    Ok(beds)
 }
 
 /// Follows a plant to the end of its case, or to an interrupt.
@@ -82,6 +101,7 @@ pub fn run_plant(case: &PlantCase, start: &PlantStart<'_>) -> Result<PlantEnding
         Ok(true) => {}
         Ok(false) => {
             let path = driven.checkpoint()?;
+            driven.end_beds()?;
             driven.summary(Verdict::Stopped)?.replace(out)?;
             progress.show(driven.run.time(), "stopped")?;
             return Ok(PlantEnding::Checkpointed(path));
@@ -98,6 +118,7 @@ pub fn run_plant(case: &PlantCase, start: &PlantStart<'_>) -> Result<PlantEnding
         }
     }
     driven.checkpoint()?;
+    driven.end_beds()?;
     let summary = driven.finish();
     let summary = summary.inspect_err(|_| {
         // The error is the one to tell; the state at the end is kept.
@@ -171,6 +192,7 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
         let distributions = Table::resume(out, DISTRIBUTIONS, saved.distributions)?;
         let (rows, next, wall) = (saved.rows, saved.next_distributions, saved.wall);
         let from = saved.from.clone();
+        let beds = couple(&mut run, bed::resume(case, out, saved.beds())?)?;
         run.resume(saved.step());
         return Ok(Driven {
             case,
@@ -184,9 +206,13 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
             before: wall,
             begun: Instant::now(),
             from,
+            beds,
         });
     }
-    let run = match start.from {
+    if let (Some(_), Some(bed)) = (start.from, case.beds.first()) {
+        return Err(PlantRunError::FromWithBed(bed.unit.clone()));
+    }
+    let mut run = match start.from {
         None => PlantRun::new(plant, integrator, tolerance)?,
         Some(folder) => {
             let state = PlantCheckpoint::read(folder)?.ok_or_else(|| ResultsError::NoResults {
@@ -204,6 +230,10 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
             PlantRun::from(plant, state.unknowns().to_vec(), integrator, tolerance)?
         }
     };
+    let beds = match case.beds.is_empty() {
+        true => Vec::new(),
+        false => couple(&mut run, bed::begin(case, out)?)?,
+    };
     let mut driven = Driven {
         case,
         out,
@@ -216,6 +246,7 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
         before: 0.0,
         begun: Instant::now(),
         from: start.from.map(|folder| folder.display().to_string()),
+        beds,
     };
     driven.record()?;
     Ok(driven)
@@ -279,6 +310,13 @@ impl Driven<'_> {
     }
 
     fn checkpoint(&mut self) -> Result<PathBuf, PlantRunError> {
+        let mut beds = Vec::new();
+        // Before the plant's own: where a run ends in between, a bed goes on from its checkpoint before.
+        for bed in &self.beds {
+            let mut bed = bed.lock().unwrap_or_else(PoisonError::into_inner);
+            bed.checkpoint()?;
+            beds.push(bed.windows());
+        }
         self.series.sync()?;
         self.distributions.sync()?;
         let written = Written {
@@ -288,10 +326,19 @@ impl Driven<'_> {
             // JSON has no infinity.
             next_distributions: self.next_distributions.min(f64::MAX),
             wall: self.wall(),
+            beds,
         };
         let state = self.run.checkpoint();
         let kept = PlantCheckpoint::new(&self.case.hash, &written, self.from.clone(), state);
         Ok(kept.write(self.out)?)
+    }
+
+    /// Beds end with their plant.
+    fn end_beds(&mut self) -> Result<(), PlantRunError> {
+        for bed in &self.beds {
+            bed.lock().unwrap_or_else(PoisonError::into_inner).stop()?;
+        }
+        Ok(())
     }
 
     fn wall(&self) -> f64 {
@@ -377,6 +424,7 @@ impl Driven<'_> {
             not_steady: None,
             stability: None,
             continuation: None,
+            tuning: None,
             wall_time_s: self.wall(),
             failure: None,
         })

@@ -67,6 +67,9 @@ pub struct PlantSummary {
     /// Steady states over a key.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continuation: Option<PlantContinuationSummary>,
+    /// Keys that were tuned to measurements before the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tuning: Option<PlantTuningSummary>,
     /// Wall time in s.
     pub wall_time_s: f64,
     /// Why the run ended with an error.
@@ -79,6 +82,9 @@ pub struct PlantSummary {
 pub struct PlantLedgerSummary {
     /// Largest difference of a tear stream from itself, relative to its flow.
     pub loop_closure: f64,
+    /// The same of each tear stream.
+    #[serde(default)]
+    pub tears: BTreeMap<String, f64>,
     /// Largest relative error of all balances.
     pub largest_relative_error: f64,
     /// The balances of each unit and of the plant.
@@ -120,7 +126,8 @@ impl PlantLedgerSummary {
             relative_error: line.relative_error,
         });
         Self {
-            loop_closure: ledger.closure,
+            loop_closure: ledger.closure(),
+            tears: ledger.tears.iter().cloned().collect(),
             largest_relative_error: ledger.worst(),
             lines: lines.collect(),
         }
@@ -184,6 +191,53 @@ pub struct PlantContinuationPoint {
     pub mode: PlantMode,
 }
 
+/// Keys that were tuned to measurements.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlantTuningSummary {
+    /// The keys.
+    pub parameters: Vec<PlantTunedParameter>,
+    /// Probability with which the intervals hold the true values.
+    pub level: f64,
+    /// Root mean square of the differences of each objective, in standard deviations of its measurements.
+    pub deviations: BTreeMap<String, f64>,
+    /// Pairs of keys whose errors go together by more than 0.95, and by how much.
+    pub correlated: Vec<(usize, usize, f64)>,
+    /// Derivatives of the case's quantities at their last values.
+    pub sensitivities: Vec<PlantSensitivity>,
+    /// Evaluations of the best fit.
+    pub evaluations: usize,
+}
+
+/// A key that was tuned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlantTunedParameter {
+    /// The key.
+    pub key: String,
+    /// Unit of the values.
+    pub unit: String,
+    /// The value found.
+    pub value: f64,
+    /// The interval.
+    pub interval: [f64; 2],
+    /// True where the measurements do not end the interval, the bound does.
+    pub open: [bool; 2],
+    /// The bounds.
+    pub bounds: [f64; 2],
+}
+
+/// How a quantity depends on the keys.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlantSensitivity {
+    /// The quantity.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+    /// Its derivative by each key, per unit of the key.
+    pub by: Vec<f64>,
+}
+
 impl PlantSummary {
     /// Reads the summary of a results folder.
     pub fn read(directory: &Path) -> Result<Self, ResultsError> {
@@ -199,7 +253,7 @@ impl PlantSummary {
     }
 
     /// Replaces the summary of a results folder.
-    pub(super) fn replace(&self, directory: &Path) -> Result<(), ResultsError> {
+    pub(crate) fn replace(&self, directory: &Path) -> Result<(), ResultsError> {
         files::replace_json(&directory.join(SUMMARY), self)
     }
 

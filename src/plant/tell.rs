@@ -6,9 +6,11 @@ use calcine_flowsheet::{Plant, PlantRun};
 
 use super::error::PlantRunError;
 use super::measure::field;
-use super::summary::{PlantMode, PlantSummary};
+use super::summary::{PlantMode, PlantSummary, PlantTuningSummary};
 use crate::case::plant::{PlantCase, PlantField};
 use crate::case::units::{short, short3};
+use crate::simulation::SimulationError;
+use crate::valid::ValidCase;
 
 /// The plant of a case as text: sizes, method, recycles, units with their streams at the start.
 pub fn plant_check(case: &PlantCase) -> Result<String, PlantRunError> {
@@ -71,6 +73,26 @@ pub fn plant_check(case: &PlantCase) -> Result<String, PlantRunError> {
                 .join(", ")
         ),
     };
+    for bed in &case.beds {
+        let own = ValidCase::open(&bed.case, &[]).map_err(SimulationError::from)?;
+        let all = &own.prepared.particles;
+        let mass = all.radius.iter().zip(&all.density).enumerate();
+        let mass = mass.map(|(row, (radius, density))| {
+            let weight = all.weight.get(row).copied().unwrap_or(1.0);
+            weight * calcine_coupler::physics::sphere::mass(*radius, *density)
+        });
+        let feeds: Vec<&str> = bed.feeds.iter().map(|feed| feed.name.as_str()).collect();
+        let _ = writeln!(
+            text,
+            "  bed            \"{}\": {} particles, {} kg, of {}, fed by {}; exchanged each {} s",
+            bed.unit,
+            all.id.len(),
+            short3(mass.sum()),
+            bed.case.display(),
+            feeds.join(", "),
+            short(bed.interval)
+        );
+    }
     if let Some(spec) = &case.continuation {
         let _ = writeln!(
             text,
@@ -106,7 +128,8 @@ fn draw_unit(
     let own = &plant.units()[unit];
     let [_, outlets] = own.ports();
     let mut head = format!("    [{}] {}", own.name, case.kinds[unit]);
-    if plant.holds(unit) {
+    // What a bed holds is known once it is made.
+    if plant.holds(unit) && case.kinds[unit] != "bed" {
         let held = run.held_by(unit);
         let mass = plant.layout().mass_flow(&held);
         let _ = write!(head, ", holds {} kg", short(mass));
@@ -217,6 +240,9 @@ pub fn plant_closing(summary: &PlantSummary) -> String {
             let _ = writeln!(text, "  limit of stability       none between these values");
         }
     }
+    if let Some(tuning) = &summary.tuning {
+        tuned(&mut text, tuning);
+    }
     for line in summary.ledger.lines.iter().filter(|l| l.place == "plant") {
         let _ = writeln!(
             text,
@@ -229,12 +255,59 @@ pub fn plant_closing(summary: &PlantSummary) -> String {
         "  ledger {:17} {:>16.3e} largest of all units",
         "units", summary.ledger.largest_relative_error
     );
-    let _ = writeln!(
-        text,
-        "  ledger {:17} {:>16.3e} largest difference of a torn stream from itself",
-        "recycles", summary.ledger.loop_closure
-    );
+    for (stream, apart) in &summary.ledger.tears {
+        let _ = writeln!(
+            text,
+            "  ledger {:17} {apart:>16.3e} largest difference from itself, relative to its flow",
+            format!("tear {stream}")
+        );
+    }
     text.trim_end().to_owned()
+}
+
+/// The keys that were tuned, and how quantities depend on them.
+fn tuned(text: &mut String, tuning: &PlantTuningSummary) {
+    for one in &tuning.parameters {
+        let ends = [0, 1].map(|end| match one.open[end] {
+            true => "bound".to_owned(),
+            false => printed(one.interval[end]),
+        });
+        let _ = writeln!(
+            text,
+            "  tuned {:18} {} {} ({} to {}, {:.0} %)",
+            one.key,
+            printed(one.value),
+            one.unit,
+            ends[0],
+            ends[1],
+            100.0 * tuning.level
+        );
+    }
+    for (name, deviation) in &tuning.deviations {
+        let _ = writeln!(
+            text,
+            "  fit of {name:17} {} standard deviations",
+            short3(*deviation)
+        );
+    }
+    for (one, other, by) in &tuning.correlated {
+        let [one, other] =
+            [one, other].map(|k| tuning.parameters.get(*k).map_or("", |p| p.key.as_str()));
+        let _ = writeln!(
+            text,
+            "  {one} and {other} cannot be told apart: their errors go together by {by:.3}"
+        );
+    }
+    for one in &tuning.sensitivities {
+        for (key, slope) in tuning.parameters.iter().zip(&one.by) {
+            let per = if key.unit.is_empty() { "1" } else { &key.unit };
+            let _ = writeln!(
+                text,
+                "  d {} / d {}: {:.4e} {} per {per}",
+                one.quantity, key.key, slope, one.unit
+            );
+        }
+    }
 }
 
 /// A quantity as a terminal shows it.

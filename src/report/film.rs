@@ -137,7 +137,8 @@ pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
     let (Some(x), Some(z)) = (range(0), range(2)) else {
         return Ok(String::new());
     };
-    Ok(draw(&frames, shade, [x.low, z.low], [x.high, z.high]))
+    let film = draw(&frames, shade, [x.low, z.low], [x.high, z.high]);
+    Ok(film + section::legend(&first))
 }
 
 fn draw(frames: &[Frame], shade: Shade, low: Spot, high: Spot) -> String {

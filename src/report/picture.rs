@@ -148,5 +148,8 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
         ));
     }
     svg.push_str("</svg></figure>");
+    if let Some(view) = views.first() {
+        svg.push_str(section::legend(&view.particles));
+    }
     svg
 }

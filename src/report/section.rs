@@ -80,14 +80,19 @@ pub(super) fn polygons(gas: &Arrays, plane: f64) -> Vec<Polygon> {
     polygons
 }
 
-/// The particles that the plane cuts.
+/// The particles that the plane cuts; one that stands for several as a sphere of their volume, weight^(1/3) times as wide.
 pub(super) fn circles(particles: &Arrays, plane: f64) -> Vec<Circle> {
     let list = |name: &str| particles.get(name).map_or(&[][..], |array| &array.values);
     let centres = list("points").chunks_exact(3);
+    let wide = |particle: usize, radius: f64| match list("weight").get(particle) {
+        Some(&weight) if weight != 1.0 => radius * weight.cbrt(),
+        _ => radius,
+    };
     centres
         .zip(list("radius"))
         .enumerate()
-        .filter_map(|(particle, (centre, radius))| {
+        .filter_map(|(particle, (centre, &radius))| {
+            let radius = wide(particle, radius);
             let squared = radius * radius - (centre[1] - plane).powi(2);
             (squared > 0.0).then(|| Circle {
                 particle,
@@ -96,6 +101,20 @@ pub(super) fn circles(particles: &Arrays, plane: f64) -> Vec<Circle> {
             })
         })
         .collect()
+}
+
+/// What the circles of a picture are, under it, where a particle stands for several; else nothing.
+pub(super) fn legend(particles: &Arrays) -> &'static str {
+    let weights = particles
+        .get("weight")
+        .map_or(&[][..], |array| &array.values);
+    match weights.iter().any(|&weight| weight != 1.0) {
+        true => {
+            "<p class=\"note\">Each circle is a parcel, drawn as a sphere with the volume of all particles that it stands \
+             for: weight<sup>1/3</sup> times the diameter of one.</p>"
+        }
+        false => "",
+    }
 }
 
 fn hexahedron_edges(nodes: &[f64]) -> Vec<[usize; 2]> {
@@ -164,6 +183,7 @@ fn hull(mut spots: Vec<Spot>) -> Vec<Spot> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::read::Array;
 
     #[test]
     fn the_hull_of_a_square_with_points_inside_and_on_its_edges_is_the_square() {
@@ -179,6 +199,25 @@ mod tests {
             hull(spots),
             [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
         );
+    }
+
+    #[test]
+    fn a_parcel_is_as_wide_as_a_sphere_of_the_volume_of_its_particles() {
+        let array = |components: usize, values: &[f64]| Array {
+            components,
+            values: values.to_vec(),
+        };
+        let mut bed = Arrays::from([
+            ("points".to_owned(), array(3, &[0.0, 0.0, 1.0])),
+            ("radius".to_owned(), array(1, &[2.0])),
+        ]);
+        assert_eq!(circles(&bed, 0.0)[0].radius, 2.0);
+        assert_eq!(legend(&bed), "");
+        bed.insert("weight".to_owned(), array(1, &[27.0]));
+        assert!((circles(&bed, 0.0)[0].radius - 6.0).abs() < 1e-14);
+        assert!(legend(&bed).contains("parcel"));
+        bed.insert("weight".to_owned(), array(1, &[1.0]));
+        assert_eq!(legend(&bed), "");
     }
 
     #[test]

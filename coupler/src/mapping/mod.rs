@@ -3,6 +3,7 @@
 mod disc;
 mod error;
 mod lanes;
+pub mod linear;
 mod overlap;
 mod passage;
 mod satellites;
@@ -10,6 +11,7 @@ mod weights;
 mod wide;
 
 use std::ops::Deref;
+use std::sync::OnceLock;
 
 use calcine_physics::{Vec3, sphere};
 use rayon::prelude::*;
@@ -19,7 +21,9 @@ pub use weights::Weights;
 
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
+use crate::mesh::tetrahedra::TetPlace;
 use crate::periodicity::Periodicity;
+use linear::LinearWeights;
 use overlap::{Overlap, Scratch};
 use passage::{Parts, Passage};
 pub(crate) use weights::Amount;
@@ -34,6 +38,8 @@ pub enum Method {
     Divided,
     /// By the exact volume that its sphere shares with each cell; continuous in position.
     Overlap,
+    /// By linear weights of its centre in the tetrahedra of the mesh, whatever its size; continuous in position.
+    Linear,
 }
 
 /// Maps particles onto the cells of a mesh.
@@ -43,6 +49,7 @@ pub struct Mapper<M> {
     overlap: Overlap,
     passage: Passage,
     periodicity: Periodicity,
+    linear: OnceLock<LinearWeights>,
 }
 
 impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
@@ -64,6 +71,7 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             overlap,
             passage,
             periodicity,
+            linear: OnceLock::new(),
         }
     }
 
@@ -82,6 +90,10 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             });
         }
         let cells = self.locator.mesh().cells();
+        if method == Method::Linear {
+            self.linear
+                .get_or_init(|| LinearWeights::new(self.locator.mesh()));
+        }
         let order = self.order(positions);
         let pieces: Vec<Piece> = order
             .par_chunks(Self::PIECE)
@@ -201,6 +213,10 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
         memory.home = home;
         let first = memory.parts.len();
         let whole = sphere::volume(radius);
+        if method == Method::Linear {
+            self.by_linear_weights((home, position), whole, &mut memory.parts);
+            return Ok(first);
+        }
         // All of it lies in one cell; a sphere too small for its volume to be a number is a point.
         if depth >= radius || whole == 0.0 || method == Method::Centroid {
             memory.parts.push(home as u32, whole);
@@ -223,6 +239,16 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             }
         }
         Ok(first)
+    }
+
+    fn by_linear_weights(&self, (home, position): (usize, Vec3), whole: f64, parts: &mut Parts) {
+        let (mesh, first) = (self.locator.mesh(), parts.len());
+        match (self.linear.get(), TetPlace::nearest(mesh, home, position)) {
+            (Some(weights), Some(at)) => weights.shares(mesh, at, |cell, share| {
+                parts.add(first, cell, share * whole);
+            }),
+            _ => parts.push(home as u32, whole),
+        }
     }
 
     fn by_satellites(&self, (position, radius): (Vec3, f64), whole: f64, memory: &mut Memory) {

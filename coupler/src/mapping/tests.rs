@@ -312,7 +312,12 @@ fn a_sphere_across_a_periodic_plane_keeps_its_volume_and_moves_with_the_cells() 
     let mapper = Mapper::new(&mesh);
     let cell = |cell: usize| [cell % 4, cell / 4 % 4, cell / 16];
     let mut random = SplitMix64(3);
-    for method in [Method::Overlap, Method::Divided, Method::Centroid] {
+    for method in [
+        Method::Overlap,
+        Method::Divided,
+        Method::Centroid,
+        Method::Linear,
+    ] {
         for _ in 0..200 {
             let radius = 0.1 + 1.5 * random.unit();
             let high = radius + (4.0 - 2.0 * radius) * random.unit();

@@ -13,6 +13,7 @@ pub mod polymesh;
 pub mod quality;
 pub mod refine;
 pub mod surface;
+pub mod tetrahedra;
 pub mod zone;
 
 use calcine_physics::Vec3;

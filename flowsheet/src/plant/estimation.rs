@@ -4,6 +4,7 @@ use super::flows::FlowWorkspace;
 use super::run::{Integrator, PlantRun};
 use super::sensitivity::{Derivatives, PlantFamily};
 use super::topology::Plant;
+use crate::measured_place::MeasuredPlace;
 use crate::{PlantError, SizeGrid};
 
 /// Differences between what a plant does and what was measured, as functions of parameters: what an estimation needs.
@@ -16,15 +17,6 @@ pub trait PlantResiduals {
 
     /// The same with their derivatives.
     fn jacobian(&self, at: &[f64]) -> Result<Derivatives, PlantError>;
-}
-
-/// Where a distribution was measured.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum MeasuredPlace {
-    /// Stream of this name.
-    Stream(String),
-    /// Content of the unit of this name.
-    Unit(String),
 }
 
 /// A sieve analysis: shares of the mass between sieves.
@@ -44,7 +36,7 @@ pub struct MeasuredDistribution {
 
 impl MeasuredDistribution {
     /// Looks at the numbers.
-    fn check(&self) -> Result<(), PlantError> {
+    pub fn check(&self) -> Result<(), PlantError> {
         let refuse = |quantity, value, allowed| {
             let name = match &self.place {
                 MeasuredPlace::Stream(name) | MeasuredPlace::Unit(name) => name,
@@ -73,8 +65,8 @@ impl MeasuredDistribution {
         Ok(())
     }
 
-    /// Differences of masses by size class from what was measured.
-    fn differences(&self, grid: &SizeGrid, masses: &[f64], to: &mut Vec<f64>) {
+    /// Shares of masses by size class between the apertures: what the sieves would show.
+    pub fn shares_of(&self, grid: &SizeGrid, masses: &[f64]) -> Vec<f64> {
         let all: f64 = masses.iter().sum();
         let below = |d: f64| -> f64 {
             let edges = grid.edges().windows(2);
@@ -84,9 +76,15 @@ impl MeasuredDistribution {
             });
             inside.sum::<f64>() / all
         };
-        for (edge, share) in self.edges.windows(2).zip(&self.shares) {
-            to.push((below(edge[1]) - below(edge[0]) - share) / self.deviation);
-        }
+        let pairs = self.edges.windows(2);
+        pairs.map(|edge| below(edge[1]) - below(edge[0])).collect()
+    }
+
+    /// Differences of masses by size class from what was measured.
+    fn differences(&self, grid: &SizeGrid, masses: &[f64], to: &mut Vec<f64>) {
+        let found = self.shares_of(grid, masses).into_iter();
+        let pairs = found.zip(&self.shares);
+        to.extend(pairs.map(|(found, share)| (found - share) / self.deviation));
     }
 
     fn find(&self, plant: &Plant) -> Result<usize, PlantError> {

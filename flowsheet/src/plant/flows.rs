@@ -2,7 +2,7 @@
 
 use super::order::UnitBlock;
 use super::tear::TearIteration;
-use super::topology::Plant;
+use super::topology::{Plant, WatchedPlace};
 use super::waveform::Waveform;
 use crate::sums::{sum, sum_of_differences, sum_of_sizes};
 use crate::{PlantError, UnitView};
@@ -21,11 +21,13 @@ const ENTHALPY_WEIGHT: f64 = 1e-6;
 pub struct FlowWorkspace {
     /// All streams, one after the other.
     pub streams: Vec<f64>,
-    /// Largest difference of a tear stream from itself, relative to its flow.
-    pub closure: f64,
+    /// Difference of each tear stream from itself, relative to its flow, in the order of [`Plant::tears`].
+    pub closures: Vec<f64>,
     /// Ways round the recycles, all in all.
     pub rounds: usize,
     made: Vec<f64>,
+    /// Signals of all units.
+    pub(super) signals: Vec<f64>,
     /// Tear streams of a recycle, what they become, and the iteration between them.
     torn: Vec<f64>,
     new: Vec<f64>,
@@ -67,7 +69,7 @@ impl Plant {
         unit: usize,
         at: Moment,
         y: &'a [f64],
-        streams: &'a [f64],
+        [streams, signals]: [&'a [f64]; 2],
     ) -> UnitView<'a> {
         let own = &self.units[unit];
         UnitView {
@@ -78,6 +80,22 @@ impl Plant {
             state: &y[own.state.clone()],
             streams,
             inlets: &own.inlets,
+            signals,
+            heard: &own.heard,
+            measured: &[],
+        }
+    }
+
+    /// The signals of all units, which follow from their unknowns.
+    fn signal(&self, y: &[f64], signals: &mut Vec<f64>) {
+        let count = self.units.last().map_or(0, |unit| unit.signals.end);
+        signals.resize(count, 0.0);
+        if count == 0 {
+            return;
+        }
+        for unit in &self.units {
+            let to = &mut signals[unit.signals.clone()];
+            unit.unit.signal(&self.layout, &y[unit.state.clone()], to);
         }
     }
 
@@ -88,8 +106,9 @@ impl Plant {
         y: &[f64],
         work: &mut FlowWorkspace,
     ) -> Result<(), PlantError> {
-        work.closure = 0.0;
+        work.closures.clear();
         work.became.clear();
+        self.signal(y, &mut work.signals);
         for block in &self.blocks {
             if block.tears.is_empty() {
                 for unit in &block.units {
@@ -165,12 +184,17 @@ impl Plant {
         y: &[f64],
         work: &mut FlowWorkspace,
     ) -> Result<(), PlantError> {
-        let FlowWorkspace { streams, made, .. } = work;
+        let FlowWorkspace {
+            streams,
+            made,
+            signals,
+            ..
+        } = work;
         made.clear();
         made.resize(self.units[unit].outlets.len() * self.layout.width(), 0.0);
         self.units[unit]
             .unit
-            .produce(&self.view(unit, at, y, streams), made)
+            .produce(&self.view(unit, at, y, [streams, signals]), made)
     }
 
     /// Puts `made` in its place: tear streams among `new`, others among the streams.
@@ -245,7 +269,7 @@ impl Plant {
             // A flow beyond all bounds is closed relative to itself, not relative to what enters.
             let bounded = sum_of_sizes(x) < MOST_FLOW * inflow;
             if closure <= LOOP_CLOSURE && (bounded || inflow == 0.0) {
-                work.closure = work.closure.max(closure);
+                self.differences(x, new, &mut work.closures);
                 return Ok(());
             }
             iteration.next(self, x, new);
@@ -257,11 +281,11 @@ impl Plant {
             }
             std::mem::swap(x, new);
         }
-        Err(self.does_not_close(block, at.time, closure, x, new))
+        Err(self.does_not_close(block, at.time, closure, inflow, [x, new]))
     }
 
     /// Whether a guess has flows that run backwards where those of a plain way round do not.
-    fn turns(&self, guess: &[f64], plain: &[f64]) -> bool {
+    pub(super) fn turns(&self, guess: &[f64], plain: &[f64]) -> bool {
         let width = self.layout.width();
         let least = |stream: &[f64]| {
             let masses = &stream[..width - 1];
@@ -277,8 +301,8 @@ impl Plant {
         block: &UnitBlock,
         time: f64,
         residual: f64,
-        x: &[f64],
-        new: &[f64],
+        inflow: f64,
+        [x, new]: [&[f64]; 2],
     ) -> PlantError {
         let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
         let names = block.tears.iter();
@@ -293,8 +317,32 @@ impl Plant {
             time,
             residual,
             iterations: MOST_ROUNDS,
-            grows: self.place_name(grows.unwrap_or(0) % width),
+            grows: match self.grown(new, inflow) {
+                Some(words) => words,
+                None => format!(
+                    "its residual is {residual:.3e} of its flow, largest in {}",
+                    self.place_name(grows.unwrap_or(0) % width)
+                ),
+            },
         }
+    }
+
+    /// What grew beyond all bounds, where something did: the flow, and what most of it is.
+    fn grown(&self, new: &[f64], inflow: f64) -> Option<String> {
+        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let flow: f64 = new.chunks_exact(width).map(|s| sum(&s[..enthalpy])).sum();
+        if sum_of_sizes(new) < 1e3 * inflow || inflow == 0.0 {
+            return None;
+        }
+        let masses = new
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| k % width != enthalpy);
+        let most = masses.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        Some(format!(
+            "its flow grew to {flow:.3e} kg/s, most of it {}",
+            self.place_name(most.0 % width)
+        ))
     }
 
     /// Mass and weighted enthalpy that enter the units of a recycle from outside.
@@ -309,24 +357,43 @@ impl Plant {
         flows.sum()
     }
 
-    /// Largest difference of a tear stream from what it became: of its mass flows together, or of its enthalpy relative to
-    /// what its heat capacity carries over 100 K.
+    /// Largest difference of a tear stream from what it became.
     pub(super) fn difference(&self, x: &[f64], new: &[f64]) -> f64 {
-        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let width = self.layout.width();
+        let pairs = x.chunks_exact(width).zip(new.chunks_exact(width));
+        let each = pairs.map(|(x, new)| self.difference_of(x, new));
+        // NaN counts as the largest.
+        each.fold(0.0, |largest, own| {
+            if own > largest || own.is_nan() {
+                own
+            } else {
+                largest
+            }
+        })
+    }
+
+    /// Adds the difference of each tear stream from what it became to a list.
+    pub(super) fn differences(&self, x: &[f64], new: &[f64], to: &mut Vec<f64>) {
+        let width = self.layout.width();
+        let pairs = x.chunks_exact(width).zip(new.chunks_exact(width));
+        to.extend(pairs.map(|(x, new)| self.difference_of(x, new)));
+    }
+
+    /// Difference of a stream from what it became: of its mass flows together, or of its enthalpy relative to what its heat
+    /// capacity carries over 100 K.
+    fn difference_of(&self, x: &[f64], new: &[f64]) -> f64 {
+        let enthalpy = self.layout.enthalpy();
+        let apart = sum_of_differences(&x[..enthalpy], &new[..enthalpy]);
+        let size = sum_of_sizes(&new[..enthalpy]);
+        let (capacity, latent) = self.layout.heat_capacity(new);
+        let heat = (new[enthalpy] - x[enthalpy]).abs();
+        let carried = 100.0 * capacity + latent + new[enthalpy].abs();
         let mut largest = 0.0f64;
-        for (x, new) in x.chunks_exact(width).zip(new.chunks_exact(width)) {
-            let apart = sum_of_differences(&x[..enthalpy], &new[..enthalpy]);
-            let size = sum_of_sizes(&new[..enthalpy]);
-            let (capacity, latent) = self.layout.heat_capacity(new);
-            let heat = (new[enthalpy] - x[enthalpy]).abs();
-            let carried = 100.0 * capacity + latent + new[enthalpy].abs();
-            for (apart, size) in [(apart, size), (heat, carried)] {
-                if apart != 0.0 {
-                    // NaN counts as the largest.
-                    let relative = apart / size;
-                    if relative > largest || relative.is_nan() {
-                        largest = relative;
-                    }
+        for (apart, size) in [(apart, size), (heat, carried)] {
+            if apart != 0.0 {
+                let relative = apart / size;
+                if relative > largest || relative.is_nan() {
+                    largest = relative;
                 }
             }
         }
@@ -367,7 +434,16 @@ impl Plant {
         let kinds = self.layout.compounds().len() + 1;
         let (of_streams, heats) = totals.split_at_mut(self.names.len() * kinds);
         for (index, unit) in self.units.iter().enumerate() {
-            let view = self.view(index, at, y, &work.streams);
+            let mut view = self.view(index, at, y, [&work.streams, &work.signals]);
+            let held;
+            match unit.watched {
+                Some(WatchedPlace::Stream(stream)) => view.measured = work.stream(self, stream),
+                Some(WatchedPlace::Unit(other)) => {
+                    held = self.held_by(other, y);
+                    view.measured = &held;
+                }
+                None => {}
+            }
             let out = &work.streams[unit.outlets.start * width..unit.outlets.end * width];
             unit.unit.rates(&view, out, &mut own[unit.state.clone()])?;
             heats[index] = unit.unit.heat(&view, out, &own[unit.state.clone()]);
@@ -384,8 +460,10 @@ impl Plant {
         let width = self.layout.width();
         let each = self.units.iter().enumerate().map(|(index, unit)| {
             let out = &work.streams[unit.outlets.start * width..unit.outlets.end * width];
-            unit.unit
-                .fastest(&self.view(index, at, y, &work.streams), out)
+            unit.unit.fastest(
+                &self.view(index, at, y, [&work.streams, &work.signals]),
+                out,
+            )
         });
         each.fold(0.0, f64::max)
     }
@@ -396,7 +474,12 @@ impl Plant {
     }
 
     /// Lets every unit look at its unknowns.
-    pub(super) fn verify(&self, at: Moment, y: &[f64], streams: &[f64]) -> Result<(), PlantError> {
+    pub(super) fn verify(
+        &self,
+        at: Moment,
+        y: &[f64],
+        work: &FlowWorkspace,
+    ) -> Result<(), PlantError> {
         for (index, unit) in self.units.iter().enumerate() {
             let bad = y[unit.state.clone()].iter().any(|value| !value.is_finite());
             if bad {
@@ -406,7 +489,8 @@ impl Plant {
                     time: at.time,
                 });
             }
-            unit.unit.verify(&self.view(index, at, y, streams))?;
+            let seen = [&work.streams[..], &work.signals];
+            unit.unit.verify(&self.view(index, at, y, seen))?;
         }
         Ok(())
     }

@@ -28,11 +28,16 @@ pub struct LedgerLine {
 pub struct PlantLedger {
     /// Lines, unit by unit, then of the plant.
     pub lines: Vec<LedgerLine>,
-    /// Largest difference of a tear stream from itself over all evaluations that were kept, relative to its flow.
-    pub closure: f64,
+    /// Each tear stream with its largest difference from itself over all evaluations that were kept, relative to its flow.
+    pub tears: Vec<(String, f64)>,
 }
 
 impl PlantLedger {
+    /// Largest difference of a tear stream from itself.
+    pub fn closure(&self) -> f64 {
+        self.tears.iter().map(|tear| tear.1).fold(0.0, f64::max)
+    }
+
     /// Largest relative error.
     pub fn worst(&self) -> f64 {
         self.lines
@@ -62,7 +67,7 @@ impl Plant {
         before: &[Vec<f64>],
         now: &[Vec<f64>],
         totals: &[f64],
-        closure: f64,
+        closures: &[f64],
     ) -> PlantLedger {
         let compounds = self.layout.compounds();
         let kinds = compounds.len() + 1;
@@ -97,7 +102,11 @@ impl Plant {
             }
         }
         self.add_lines("plant", &plant, &mut lines);
-        PlantLedger { lines, closure }
+        let tears = self.tears().into_iter().zip(closures);
+        PlantLedger {
+            lines,
+            tears: tears.map(|(name, own)| (name.to_owned(), *own)).collect(),
+        }
     }
 
     fn add_lines(&self, place: &str, sums: &[[f64; 5]], lines: &mut Vec<LedgerLine>) {

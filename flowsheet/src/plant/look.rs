@@ -2,6 +2,7 @@
 
 use super::run::PlantRun;
 use super::topology::{Plant, PlantUnit};
+use crate::SignalKind;
 
 impl PlantUnit {
     /// Names of the ports that streams enter by, and that they leave by.
@@ -31,9 +32,17 @@ impl Plant {
         self.blocks.iter().map(|b| (&b.units[..], &b.tears[..]))
     }
 
-    /// True where a unit has unknowns, and so may hold something.
+    /// True where a unit has unknowns and ports, and so may hold something.
     pub fn holds(&self, unit: usize) -> bool {
-        !self.units[unit].state.is_empty()
+        let own = &self.units[unit];
+        let has_ports = !own.inlets.is_empty() || !own.outlets.is_empty();
+        has_ports && !own.state.is_empty()
+    }
+
+    /// True of a controller: a unit that gives others a setting.
+    pub fn controls(&self, unit: usize) -> bool {
+        let signals = self.units[unit].unit.signals();
+        signals.is_some_and(|(kind, _)| kind == SignalKind::Setting)
     }
 
     /// What a unit holds at the unknowns `y`, in kg and J, by the places of a stream.
@@ -52,6 +61,18 @@ impl Plant {
 }
 
 impl PlantRun<'_> {
+    /// What a controller gives; NaN of another unit.
+    pub fn setting(&self, unit: usize) -> f64 {
+        if !self.plant.controls(unit) {
+            return f64::NAN;
+        }
+        let mut out = [f64::NAN];
+        let own = &self.plant.units[unit];
+        own.unit
+            .signal(&self.plant.layout, self.unit(unit), &mut out);
+        out[0]
+    }
+
     /// What a unit holds, in kg and J, by the places of a stream.
     pub fn held_by(&self, unit: usize) -> Vec<f64> {
         self.plant.held_by(unit, self.unknowns())

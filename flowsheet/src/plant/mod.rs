@@ -1,5 +1,6 @@
 //! Units and streams together.
 
+mod beds;
 mod continuation;
 mod estimation;
 mod explicit;
@@ -20,9 +21,7 @@ mod waveform;
 mod windows;
 
 pub use continuation::{Continuation, ContinuationPoint};
-pub use estimation::{
-    MeasuredDistribution, MeasuredPlace, MeasuredState, PlantEstimation, PlantResiduals,
-};
+pub use estimation::{MeasuredDistribution, MeasuredState, PlantEstimation, PlantResiduals};
 pub use flows::{FlowWorkspace, LOOP_CLOSURE};
 pub use ledger::{LedgerLine, PlantLedger};
 pub use run::{Integrator, PlantRun, PlantStep};

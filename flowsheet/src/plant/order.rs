@@ -13,10 +13,15 @@ pub struct UnitBlock {
 /// each stream leaves and enters; a unit through which nothing passes at once is not part of a recycle.
 ///
 /// Within a recycle the units stand in the order of their declaration as far as streams allow, and the tear streams are those
-/// that flow against it.
+/// that flow against it. Streams that are chosen are torn first: units do not wait for them.
 ///
 /// Source: Tarjan, SIAM J. Comput. 1 (1972) 146, doi 10.1137/0201010.
-pub fn order(units: usize, ends: &[(usize, usize)], direct: &[bool]) -> Vec<UnitBlock> {
+pub fn order(
+    units: usize,
+    ends: &[(usize, usize)],
+    direct: &[bool],
+    chosen: &[usize],
+) -> Vec<UnitBlock> {
     let mut search = Search {
         next: vec![Vec::new(); units],
         index: vec![None; units],
@@ -48,20 +53,23 @@ pub fn order(units: usize, ends: &[(usize, usize)], direct: &[bool]) -> Vec<Unit
             continue;
         }
         members.sort_unstable();
-        blocks.push(tear(&members, ends));
+        blocks.push(tear(&members, ends, chosen));
     }
     blocks
 }
 
 /// Orders the units of a recycle: next is the first that waits for no other, else the one with the fewest streams to tear.
-fn tear(members: &[usize], ends: &[(usize, usize)]) -> UnitBlock {
+fn tear(members: &[usize], ends: &[(usize, usize)], chosen: &[usize]) -> UnitBlock {
     let inside = |unit: &usize| members.contains(unit);
     let mut left = members.to_vec();
     let mut block = UnitBlock::default();
     while !left.is_empty() {
         let waits = |unit: usize| {
-            let open = |(from, to): &&(usize, usize)| *to == unit && left.contains(from);
-            ends.iter().filter(open).count()
+            let streams = ends.iter().enumerate();
+            let open = streams.filter(|(stream, (from, to))| {
+                *to == unit && left.contains(from) && !chosen.contains(stream)
+            });
+            open.count()
         };
         let Some(next) = left
             .iter()
@@ -127,16 +135,24 @@ mod tests {
     fn a_recycle_is_torn_once_and_what_follows_comes_after() {
         // 0 -> 1 -> 2 -> 3 -> 1, 2 -> 4.
         let ends = [(0, 1), (1, 2), (2, 3), (3, 1), (2, 4)];
-        let blocks = order(5, &ends, &[true; 5]);
+        let blocks = order(5, &ends, &[true; 5], &[]);
         let units: Vec<_> = blocks.iter().map(|block| block.units.clone()).collect();
         assert_eq!(units, [vec![0], vec![1, 2, 3], vec![4]]);
         assert_eq!(blocks[1].tears, [3]);
     }
 
     #[test]
+    fn a_recycle_is_torn_where_it_is_told() {
+        let ends = [(0, 1), (1, 2), (2, 3), (3, 1), (2, 4)];
+        let blocks = order(5, &ends, &[true; 5], &[1]);
+        assert_eq!(blocks[1].tears, [1]);
+        assert_eq!(blocks[1].units, [2, 3, 1]);
+    }
+
+    #[test]
     fn a_unit_that_holds_back_opens_the_recycle() {
         let ends = [(0, 1), (1, 2), (2, 1)];
-        let blocks = order(3, &ends, &[true, true, false]);
+        let blocks = order(3, &ends, &[true, true, false], &[]);
         assert!(blocks.iter().all(|block| block.tears.is_empty()));
         let place = |unit| blocks.iter().position(|block| block.units == [unit]);
         assert!(place(2) < place(1));

@@ -7,7 +7,7 @@ use super::ledger::PlantLedger;
 use super::method::{Followed, Span, StepMethod};
 use super::stabilised::Chebyshev;
 use super::topology::Plant;
-use crate::PlantError;
+use crate::{CoupledBed, PlantError};
 
 /// How a plant is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +38,8 @@ pub struct PlantStep {
     pub step: f64,
     /// Length of the next window in s.
     pub window: f64,
-    /// Largest closure so far.
-    pub closure: f64,
+    /// Largest closure of each tear stream so far.
+    pub closures: Vec<f64>,
     /// What was held at the start.
     pub held: Vec<Vec<f64>>,
 }
@@ -52,10 +52,12 @@ pub struct PlantRun<'a> {
     pub(super) time: f64,
     pub(super) now: Followed,
     scales: Vec<f64>,
-    held: Vec<Vec<f64>>,
-    pub(super) closure: f64,
+    pub(super) held: Vec<Vec<f64>>,
+    pub(super) closures: Vec<f64>,
     /// Length of the next window of waveform relaxation in s; zero before the first.
     pub(super) window: f64,
+    /// Beds that are computed elsewhere, in the order of their units.
+    pub(super) beds: Vec<Box<dyn CoupledBed>>,
 }
 
 impl<'a> PlantRun<'a> {
@@ -100,22 +102,29 @@ impl<'a> PlantRun<'a> {
                 work: FlowWorkspace::new(plant),
                 steps: [0; 2],
             },
-            closure: 0.0,
+            closures: vec![0.0; plant.tears().len()],
             window: 0.0,
+            beds: Vec::new(),
         };
         run.settle()?;
         Ok(run)
     }
 
     /// Computes the streams of the present unknowns.
-    fn settle(&mut self) -> Result<(), PlantError> {
+    pub(super) fn settle(&mut self) -> Result<(), PlantError> {
         let at = Moment {
             time: self.time,
             end: f64::INFINITY,
         };
         self.plant.flows(at, &self.now.y, &mut self.now.work)?;
-        self.closure = self.closure.max(self.now.work.closure);
-        self.plant.verify(at, &self.now.y, &self.now.work.streams)
+        self.note_closures();
+        self.plant.verify(at, &self.now.y, &self.now.work)
+    }
+
+    /// Keeps the largest closure of each tear stream; within a window of waveform relaxation there is none.
+    fn note_closures(&mut self) {
+        let pairs = self.closures.iter_mut().zip(&self.now.work.closures);
+        pairs.for_each(|(largest, own)| *largest = largest.max(*own));
     }
 
     /// Advances to a time in s.
@@ -152,6 +161,7 @@ impl<'a> PlantRun<'a> {
             let end = self.plant.next_break(self.time).min(until);
             self.follow(end, &mut tell)?;
             self.time = end;
+            self.exchange()?;
             self.settle()?;
         }
         Ok(())
@@ -189,14 +199,13 @@ impl<'a> PlantRun<'a> {
         };
         let took = self.method.advance(&span, &mut self.now)?;
         // The last stage is at the end of the step.
-        self.closure = self.closure.max(self.now.work.closure);
+        self.note_closures();
         self.time += took;
         let now = Moment {
             time: self.time,
             end,
         };
-        self.plant
-            .verify(now, &self.now.y, &self.now.work.streams)?;
+        self.plant.verify(now, &self.now.y, &self.now.work)?;
         Ok(took)
     }
 
@@ -248,7 +257,7 @@ impl<'a> PlantRun<'a> {
     pub fn ledger(&self) -> PlantLedger {
         let now = self.plant.held(&self.now.y);
         self.plant
-            .ledger(&self.held, &now, &self.now.totals, self.closure)
+            .ledger(&self.held, &now, &self.now.totals, &self.closures)
     }
 
     /// All that decides how the run goes on.
@@ -260,7 +269,7 @@ impl<'a> PlantRun<'a> {
             streams: self.now.work.streams.clone(),
             step: self.method.step(),
             window: self.window,
-            closure: self.closure,
+            closures: self.closures.clone(),
             held: self.held.clone(),
         }
     }
@@ -273,7 +282,7 @@ impl<'a> PlantRun<'a> {
         self.now.work.streams = from.streams;
         self.method.set_step(from.step);
         self.window = from.window;
-        self.closure = from.closure;
+        self.closures = from.closures;
         self.held = from.held;
     }
 }

@@ -63,6 +63,7 @@ impl Plant {
     ///
     /// Source: Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998) 508, doi 10.1137/S0036142996304796.
     pub fn steady(&self, guess: &[f64], time: f64) -> Result<SteadyState, PlantError> {
+        self.refuse_beds("no steady state can be looked for")?;
         let at = Moment {
             time,
             end: f64::INFINITY,

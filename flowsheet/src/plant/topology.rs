@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::order::{UnitBlock, order};
+use crate::measured_place::MeasuredPlace;
 use crate::{PlantError, ProcessUnit, StreamLayout};
 
 /// A stream: from a unit's outlet to a unit's inlet.
@@ -39,6 +40,18 @@ pub struct PlantUnit {
     /// Streams that enter, port by port; streams that leave follow one another.
     pub(super) inlets: Vec<usize>,
     pub(super) outlets: Range<usize>,
+    /// Its signals among those of the plant, and those that it takes.
+    pub(super) signals: Range<usize>,
+    pub(super) heard: Vec<Range<usize>>,
+    /// What it measures.
+    pub(super) watched: Option<WatchedPlace>,
+}
+
+/// Where a unit measures: a stream, or what another unit holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum WatchedPlace {
+    Stream(usize),
+    Unit(usize),
 }
 
 /// A plant: units, streams between their ports, and the order in which they are computed.
@@ -62,7 +75,7 @@ impl Plant {
         let mut wrong = Vec::new();
         let mut seen = BTreeSet::new();
         let mut made = Vec::new();
-        let (mut unknowns, mut streams) = (0, 0);
+        let (mut unknowns, mut streams, mut signals) = (0, 0, 0);
         let mut ports = Vec::new();
         for (name, mut unit) in units {
             if !seen.insert(name.clone()) {
@@ -73,23 +86,33 @@ impl Plant {
             }
             let (inlets, outlets) = (unit.inlets(), unit.outlets());
             let (state, out) = (unit.unknowns(&layout), outlets.len());
+            let own = unit.signals().map_or(0, |(_, count)| count);
             made.push(PlantUnit {
                 name,
                 unit,
                 state: unknowns..unknowns + state,
                 inlets: Vec::new(),
                 outlets: streams..streams + out,
+                signals: signals..signals + own,
+                heard: Vec::new(),
+                watched: None,
             });
             ports.push((inlets, outlets));
             (unknowns, streams) = (unknowns + state, streams + out);
+            signals += own;
         }
+        Self::hear(&mut made, &mut wrong);
         let places = Self::connect(&mut made, &ports, connections, streams, &mut wrong);
+        if wrong.is_empty() {
+            let names: Vec<&str> = places.iter().map(|(name, ..)| name.as_str()).collect();
+            Self::watch(&mut made, &names, &mut wrong);
+        }
         if !wrong.is_empty() {
             return Err(wrong);
         }
         let ends: Vec<(usize, usize)> = places.iter().map(|(_, from, to)| (*from, *to)).collect();
         let direct: Vec<bool> = made.iter().map(|u| u.unit.passes_through()).collect();
-        let blocks = order(made.len(), &ends, &direct);
+        let blocks = order(made.len(), &ends, &direct, &[]);
         Ok(Self {
             layout,
             units: made,
@@ -98,6 +121,44 @@ impl Plant {
             unknowns,
             ends,
         })
+    }
+
+    /// The same plant with its recycles torn at these streams; refused where they are not enough, or not within one.
+    pub fn torn_at(mut self, streams: &[&str]) -> Result<Self, PlantError> {
+        let refuse = |stream: &str, why| {
+            Err(PlantError::Tear {
+                stream: stream.to_owned(),
+                why,
+            })
+        };
+        let mut chosen = Vec::new();
+        for name in streams {
+            match self.stream(name) {
+                Some(stream) => chosen.push(stream),
+                None => {
+                    return Err(PlantError::UnknownStream(
+                        (*name).to_owned(),
+                        self.names.join(", "),
+                    ));
+                }
+            }
+        }
+        let direct: Vec<bool> = self.units.iter().map(|u| u.unit.passes_through()).collect();
+        self.blocks = order(self.units.len(), &self.ends, &direct, &chosen);
+        let torn: Vec<usize> = self.blocks.iter().flat_map(|b| b.tears.clone()).collect();
+        if let Some(stream) = chosen.iter().find(|stream| !torn.contains(stream)) {
+            return refuse(
+                &self.names[*stream],
+                "no recycle needs to be torn there; leave it out",
+            );
+        }
+        match torn.iter().find(|stream| !chosen.contains(stream)) {
+            Some(stream) => refuse(
+                &self.names[*stream],
+                "its recycle is not opened by the streams that are named; name it, or another stream of the same recycle",
+            ),
+            None => Ok(self),
+        }
     }
 
     /// Sets the units' inlets; name and ends of each stream.
@@ -179,6 +240,75 @@ impl Plant {
             }
         }
         left.into_iter().flatten().collect()
+    }
+
+    /// Finds the signals that units take from others.
+    fn hear(units: &mut [PlantUnit], wrong: &mut Vec<PlantError>) {
+        for index in 0..units.len() {
+            let mut heard = Vec::new();
+            for (from, wanted) in units[index].unit.listens_to() {
+                let names = || {
+                    let names = units.iter().map(|unit| unit.name.as_str());
+                    names.collect::<Vec<_>>().join(", ")
+                };
+                match units.iter().find(|unit| unit.name == from) {
+                    Some(other) => match other.unit.signals() {
+                        Some((kind, _)) if kind == wanted => heard.push(other.signals.clone()),
+                        _ => wrong.push(PlantError::Signals {
+                            unit: units[index].name.clone(),
+                            from,
+                            wanted,
+                        }),
+                    },
+                    None => wrong.push(PlantError::UnknownUnit(from.clone(), names())),
+                }
+            }
+            units[index].heard = heard;
+        }
+    }
+
+    /// Finds what units measure.
+    fn watch(units: &mut [PlantUnit], streams: &[&str], wrong: &mut Vec<PlantError>) {
+        let names: Vec<String> = units.iter().map(|unit| unit.name.clone()).collect();
+        for unit in units {
+            let Some(place) = unit.unit.watches() else {
+                continue;
+            };
+            let found = match place {
+                MeasuredPlace::Stream(name) => streams
+                    .iter()
+                    .position(|own| *own == name)
+                    .map(WatchedPlace::Stream)
+                    .ok_or_else(|| PlantError::UnknownStream(name.clone(), streams.join(", "))),
+                MeasuredPlace::Unit(name) => names
+                    .iter()
+                    .position(|own| own == name)
+                    .map(WatchedPlace::Unit)
+                    .ok_or_else(|| PlantError::UnknownUnit(name.clone(), names.join(", "))),
+            };
+            match found {
+                Ok(place) => unit.watched = Some(place),
+                Err(error) => wrong.push(error),
+            }
+        }
+    }
+
+    /// Units that stand for beds that are computed elsewhere, by their places.
+    pub fn coupled_beds(&self) -> Vec<usize> {
+        let units = self.units.iter().enumerate();
+        let beds = units.filter(|(_, unit)| unit.unit.coupling().is_some());
+        beds.map(|(index, _)| index).collect()
+    }
+
+    /// An error where there is such a unit.
+    pub(super) fn refuse_beds(&self, what: &'static str) -> Result<(), PlantError> {
+        match self.coupled_beds().first() {
+            Some(bed) => Err(PlantError::CoupledInTime {
+                unit: self.units[*bed].name.clone(),
+                what,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// What streams are made of.

@@ -2,12 +2,23 @@
 
 use super::flows::{LOOP_CLOSURE, Moment};
 use super::run::PlantRun;
-use super::waveform::{NODES, NodeIteration, Waveform, WaveformSettings};
+use super::waveform::{NODES, NodeIteration, TearAcceleration, Waveform, WaveformSettings};
 use crate::PlantError;
 
 /// What tear streams may differ from their polynomials between nodes, relative to the integrator's tolerance, whose own
 /// errors are in them.
 const BEND: f64 = 10.0;
+/// An iteration whose difference has grown to so many times its least one will not settle.
+const RUNAWAY: f64 = 1e4;
+
+/// The larger of two; NaN counts as the largest.
+fn larger(one: f64, other: f64) -> f64 {
+    if other > one || other.is_nan() {
+        other
+    } else {
+        one
+    }
+}
 
 impl PlantRun<'_> {
     /// Advances to a time in s by waveform relaxation (docs/theory.md, FLS-1): in each window the plant, opened at its tear
@@ -25,11 +36,18 @@ impl PlantRun<'_> {
         } else {
             settings.first
         };
+        let mut why = None;
         while self.time < until {
             let end = self.plant.next_break(self.time).min(until);
-            let took = span.min(end - self.time);
-            match self.window(took, end, settings)? {
+            let start = self.time;
+            let took = span.min(end - start);
+            match self.window(took, end, settings, &mut why)? {
                 Some(iterations) => {
+                    if took >= end - start {
+                        self.time = end;
+                        self.exchange()?;
+                        self.settle()?;
+                    }
                     if took < span {
                         // Shortened by the end: says nothing about the next.
                         self.window = span;
@@ -42,10 +60,10 @@ impl PlantRun<'_> {
                 None => {
                     self.window = 0.5 * took;
                     if self.window < settings.shortest {
-                        return Err(PlantError::Steps {
+                        return Err(why.unwrap_or(PlantError::Steps {
                             reached: self.time,
                             cause: "windows became too short for their tear streams; take `monolithic` in place of `waveform`",
-                        });
+                        }));
                     }
                 }
             }
@@ -54,12 +72,43 @@ impl PlantRun<'_> {
         Ok(())
     }
 
-    /// One window; the iterations it took, or none where it has to be shorter (the state is then that of its start).
+    /// One window; the iterations it took, or none where it has to be shorter (the state is then that of its start). A plant
+    /// that could not be followed with tear streams that are given, too, is tried in a shorter one; `why` is what it said.
     fn window(
         &mut self,
         span: f64,
         end: f64,
         settings: &WaveformSettings,
+        why: &mut Option<PlantError>,
+    ) -> Result<Option<usize>, PlantError> {
+        let start = self.clone_state();
+        let streams = self.now.work.streams.clone();
+        let mut ways = vec![settings.acceleration];
+        // Secants of every number for itself do not settle on all recycles.
+        if settings.acceleration != TearAcceleration::Anderson {
+            ways.push(TearAcceleration::Anderson);
+        }
+        for acceleration in ways {
+            match self.relax(span, end, settings, acceleration) {
+                Err(error) => {
+                    *why = Some(error);
+                    self.now.work.given = None;
+                    self.now.work.streams.copy_from_slice(&streams);
+                    self.restore(&start);
+                }
+                done => return done,
+            }
+        }
+        Ok(None)
+    }
+
+    /// [`Self::window`] by one acceleration; an error where that does not settle.
+    fn relax(
+        &mut self,
+        span: f64,
+        end: f64,
+        settings: &WaveformSettings,
+        acceleration: TearAcceleration,
     ) -> Result<Option<usize>, PlantError> {
         let start = self.clone_state();
         let from = self.time;
@@ -70,12 +119,13 @@ impl PlantRun<'_> {
         let mut wave = Waveform::constant(from, span, &self.plant.torn(&self.now.work));
         let size = wave.values[0].len();
         let mut iteration = NodeIteration::new();
+        let mut least = f64::INFINITY;
         for count in 1..=settings.most {
             self.restore(&start);
             self.now.work.given = Some(wave.clone());
             let mut x = Vec::with_capacity(NODES * size);
             let mut made = Vec::with_capacity(NODES * size);
-            let (mut closure, mut bend) = (0.0f64, 0.0f64);
+            let (mut closures, mut bend) = (vec![0.0f64; self.closures.len()], 0.0f64);
             for k in 0..NODES {
                 let time = if k == NODES - 1 {
                     from + span
@@ -86,13 +136,17 @@ impl PlantRun<'_> {
                 if k > 0 {
                     let middle = 0.5 * (self.time + time);
                     self.follow(middle, |_| ())?;
-                    bend = bend.max(self.torn_difference(middle, end)?);
+                    let there = self.torn_differences(middle, end)?;
+                    bend = there.into_iter().fold(bend, larger);
                     self.follow(time, |_| ())?;
                 }
-                closure = closure.max(self.torn_difference(time, end)?);
+                let there = self.torn_differences(time, end)?;
+                let pairs = closures.iter_mut().zip(there);
+                pairs.for_each(|(largest, own)| *largest = larger(*largest, own));
                 x.extend_from_slice(&wave.values[k]);
                 made.extend_from_slice(&self.now.work.became);
             }
+            let closure = closures.iter().copied().fold(0.0, larger);
             if closure <= LOOP_CLOSURE * 10.0 {
                 if bend > BEND * self.tolerance.max(LOOP_CLOSURE * 100.0)
                     && span > settings.shortest
@@ -103,33 +157,45 @@ impl PlantRun<'_> {
                 }
                 self.time = from + span;
                 self.now.work.given = None;
-                self.closure = self.closure.max(closure);
+                let pairs = self.closures.iter_mut().zip(&closures);
+                pairs.for_each(|(largest, own)| *largest = largest.max(*own));
                 let now = Moment {
                     time: self.time,
                     end,
                 };
-                self.plant
-                    .verify(now, &self.now.y, &self.now.work.streams)?;
+                self.plant.verify(now, &self.now.y, &self.now.work)?;
                 return Ok(Some(count));
             }
+            if closure.is_nan() || closure > RUNAWAY * least {
+                break;
+            }
+            least = least.min(closure);
+            let plain = made.clone();
             self.plant.weigh_heat(&mut x, true);
             self.plant.weigh_heat(&mut made, true);
-            iteration.accelerate(settings.acceleration, &x, &mut made);
+            iteration.accelerate(acceleration, &x, &mut made);
             self.plant.weigh_heat(&mut made, false);
-            for (values, new) in wave.values.iter_mut().zip(made.chunks_exact(size)) {
-                values.copy_from_slice(new);
+            let pairs = made.chunks_exact(size).zip(plain.chunks_exact(size));
+            for (values, (new, plain)) in wave.values.iter_mut().zip(pairs) {
+                // A guess whose flows run backwards is none.
+                let turned = self.plant.turns(new, plain);
+                values.copy_from_slice(if turned { plain } else { new });
             }
         }
-        self.now.work.given = None;
-        self.restore(&start);
-        Ok(None)
+        Err(PlantError::Steps {
+            reached: from,
+            cause: "tear streams of its windows do not settle; take `monolithic` in place of `waveform`",
+        })
     }
 
     /// What the tear streams became at the present unknowns, against what they were.
-    fn torn_difference(&mut self, time: f64, end: f64) -> Result<f64, PlantError> {
+    fn torn_differences(&mut self, time: f64, end: f64) -> Result<Vec<f64>, PlantError> {
         let at = Moment { time, end };
         self.plant.flows(at, &self.now.y, &mut self.now.work)?;
         let were = self.plant.torn(&self.now.work);
-        Ok(self.plant.difference(&were, &self.now.work.became))
+        let mut all = Vec::new();
+        let became = &self.now.work.became;
+        self.plant.differences(&were, became, &mut all);
+        Ok(all)
     }
 }

@@ -1,6 +1,6 @@
 //! A bunker.
 
-use crate::{PlantError, ProcessUnit, StreamLayout, Timetable, UnitView};
+use crate::{PlantError, ProcessUnit, SignalKind, StreamLayout, Timetable, UnitView};
 
 /// How a bunker empties.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,8 @@ pub enum Discharge {
     Adaptive(f64),
     /// A mass flow in kg/s over time. It ends when the bunker is empty: by an error, as a rate needs something to move.
     Rate(Timetable),
+    /// A mass flow in kg/s that a controller sets, while there is something to move.
+    Controlled(String),
 }
 
 /// A well-mixed store.
@@ -38,6 +40,10 @@ impl Bunker {
                 let level = 2.0 * mass / (mass + target);
                 view.layout.mass_flow(view.inlet(0)) * level * level / mass
             }
+            Discharge::Controlled(_) => match mass > 0.0 {
+                true => view.signal(0)[0].max(0.0) / mass,
+                false => 0.0,
+            },
             Discharge::Rate(rate) => {
                 if mass <= 0.0 {
                     return Err(PlantError::Value {
@@ -135,6 +141,13 @@ impl ProcessUnit for Bunker {
 
     fn fastest(&self, view: &UnitView<'_>, _out: &[f64]) -> f64 {
         self.flow(view).unwrap_or(0.0)
+    }
+
+    fn listens_to(&self) -> Vec<(String, SignalKind)> {
+        match &self.discharge {
+            Discharge::Controlled(name) => vec![(name.clone(), SignalKind::Setting)],
+            _ => Vec::new(),
+        }
     }
 
     fn next_break(&self, time: f64) -> Option<f64> {

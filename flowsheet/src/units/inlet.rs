@@ -1,18 +1,29 @@
 //! What enters a plant.
 
-use crate::{PlantError, ProcessUnit, StreamLayout, Timetable, UnitView};
+use crate::{PlantError, ProcessUnit, SignalKind, StreamLayout, Timetable, UnitView};
 
 /// Material that enters the plant: one stream times a schedule.
 #[derive(Clone, Debug)]
 pub struct PlantInlet {
     stream: Vec<f64>,
     factor: Timetable,
+    controller: Option<String>,
 }
 
 impl PlantInlet {
     /// A stream in the layout of the plant, times a factor over time.
     pub fn new(stream: Vec<f64>, factor: Timetable) -> Self {
-        Self { stream, factor }
+        Self {
+            stream,
+            factor,
+            controller: None,
+        }
+    }
+
+    /// The same times the output of a controller.
+    pub fn with_controller(mut self, controller: String) -> Self {
+        self.controller = Some(controller);
+        self
     }
 }
 
@@ -55,11 +66,20 @@ impl ProcessUnit for PlantInlet {
     }
 
     fn produce(&self, view: &UnitView<'_>, out: &mut [f64]) -> Result<(), PlantError> {
-        let factor = self.factor.within(view.time, view.end);
+        let mut factor = self.factor.within(view.time, view.end);
+        if self.controller.is_some() {
+            factor *= view.signal(0)[0];
+        }
         out.iter_mut()
             .zip(&self.stream)
             .for_each(|(o, s)| *o = factor * s);
         Ok(())
+    }
+
+    fn listens_to(&self) -> Vec<(String, SignalKind)> {
+        let name = self.controller.iter();
+        name.map(|name| (name.clone(), SignalKind::Setting))
+            .collect()
     }
 
     fn next_break(&self, time: f64) -> Option<f64> {

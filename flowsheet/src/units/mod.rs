@@ -1,6 +1,8 @@
 //! Units, one a file.
 
+mod bed;
 mod bunker;
+mod controller;
 mod cyclone;
 mod delay;
 mod dryer;
@@ -12,11 +14,13 @@ mod outlet;
 mod screen;
 mod splitter;
 
+pub use bed::CoupledBedUnit;
 pub use bunker::{Bunker, Discharge};
+pub use controller::{Controller, MeasuredField};
 pub use cyclone::Cyclone;
 pub use delay::TimeDelay;
 pub use dryer::Dryer;
-pub use granulator::{BedHeat, BedLevel, Granulator, Overspray};
+pub use granulator::{BedHeat, BedKernel, BedLevel, Granulator, Overspray};
 pub use inlet::PlantInlet;
 pub use mill::Mill;
 pub use mixer::Mixer;

@@ -32,7 +32,6 @@ mod window;
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
@@ -328,14 +327,6 @@ impl Part for NativeGas {
             self.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
         })
-    }
-
-    fn processor_time(&self) -> Duration {
-        Duration::ZERO
-    }
-
-    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
-        Ok(())
     }
 }
 

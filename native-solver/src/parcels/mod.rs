@@ -5,7 +5,6 @@ mod changes;
 mod collisions;
 mod error;
 mod flight;
-mod linear;
 mod packing;
 mod state;
 mod step;
@@ -16,10 +15,10 @@ mod walls;
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::tetrahedra::TetPlace;
 use calcine_coupler::motion::{Motion, ParticleChanges};
 use calcine_coupler::numerics::parallel;
 use calcine_coupler::parcels::ParcelMotion;
@@ -36,7 +35,7 @@ pub use error::ParcelError;
 pub use flight::Flight;
 use packing::{Packer, RowAmounts};
 use step::{FlyingParcel, fly};
-pub use tetrahedra::{Beyond, TetPlace, Tetrahedra};
+pub use tetrahedra::{Beyond, Tetrahedra};
 pub use track::WayEnd;
 use walls::WallFaces;
 
@@ -362,14 +361,6 @@ impl Part for NativeParcels {
             self.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
         })
-    }
-
-    fn processor_time(&self) -> Duration {
-        Duration::ZERO
-    }
-
-    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
-        Ok(())
     }
 }
 

@@ -5,11 +5,13 @@
 //! V (α(τ) − α*) = Δt² Σ_f φ_f A_f (τ_N − τ_P)/(ρ_f d_f),
 //!
 //! with the share φ that drag leaves of what a force adds to velocities in a step, solved for the stress τ, whose α(τ) stays below close packing. It is concave and the matrix of the faces is an M-matrix, so
-//! that Newton's method rises to the solution from below. The volume that passes each face moves the parcels, the impulse
+//! that Newton's method rises to the solution from below. The volume that passes each face moves the parcels, once more with more stress where that leaves a cell above close packing, the impulse
 //! −Δt (τ_N − τ_P) A_f n of each face is shared by the masses at both its sides.
 
 use std::sync::Arc;
 
+use calcine_coupler::mapping::linear::{CornerValues, LinearWeights};
+use calcine_coupler::mesh::tetrahedra::{Barycentric, TetPlace};
 use calcine_coupler::numerics::parallel;
 use calcine_coupler::parcels::ParcelPacking;
 use calcine_coupler::physics::Vec3;
@@ -17,10 +19,9 @@ use calcine_coupler::physics::parcels::HarrisCrighton;
 use rayon::prelude::*;
 
 use super::error::ParcelError;
-use super::linear::{CornerValues, LinearWeights};
 use super::step::{FlyingParcel, PIECE};
 use super::stress::StressCurve;
-use super::tetrahedra::{Barycentric, TetPlace, Tetrahedra};
+use super::tetrahedra::Tetrahedra;
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
@@ -32,6 +33,13 @@ const ITERATIONS: u32 = 80;
 const RESIDUAL: f64 = 1e-9;
 /// Σ cos² of the directions to the neighbours of a cell against one direction, above which they tell how the stress changes along it.
 const FACING: f64 = 0.01;
+/// Times at most that the stress is solved for in a step; one is the rule.
+const ROUNDS: u32 = 30;
+/// Rounds without a gain after which the best is taken.
+const PATIENCE: u32 = 3;
+/// What is missing of the solid fraction that was solved for counts so many times in the next round, as linear weights spread over
+/// several cells what passes a face.
+const MISSED: f64 = 2.0;
 /// Share of the distance between two centres that a parcel is moved by the stress in a step at most.
 const FARTHEST: f64 = 0.5;
 
@@ -82,7 +90,7 @@ impl Packer {
             }
         }
         Self {
-            weights: LinearWeights::new(tetrahedra),
+            weights: LinearWeights::new(mesh),
             matrix: Matrix::new(Arc::clone(&grid)),
             incomplete: Incomplete::default(),
             krylov: Krylov::default(),
@@ -98,33 +106,29 @@ impl Packer {
         parcels: &[FlyingParcel],
         amounts: RowAmounts<'_>,
     ) -> CellSolid {
-        let weights = &self.weights;
-        let mut volume: CornerValues<f64> = weights.corners(tetrahedra);
-        let mut mass: CornerValues<f64> = weights.corners(tetrahedra);
-        let mut yielding: CornerValues<f64> = weights.corners(tetrahedra);
-        let mut momentum: CornerValues<Vec3> = weights.corners(tetrahedra);
+        let (weights, mesh) = (&self.weights, tetrahedra.mesh());
+        let mut volume: CornerValues<f64> = weights.corners(mesh);
+        let mut mass: CornerValues<f64> = weights.corners(mesh);
+        let mut yielding: CornerValues<f64> = weights.corners(mesh);
+        let mut momentum: CornerValues<Vec3> = weights.corners(mesh);
         for (row, parcel) in parcels.iter().enumerate() {
-            let share = tetrahedra.map(parcel.place).of(parcel.position);
-            let (v, m) = (amounts.volume[row], amounts.mass[row]);
-            weights.add(tetrahedra, &mut volume, parcel.place, share, v);
-            weights.add(tetrahedra, &mut mass, parcel.place, share, m);
-            let free = parcel.yielding * m;
-            weights.add(tetrahedra, &mut yielding, parcel.place, share, free);
-            weights.add(
-                tetrahedra,
-                &mut momentum,
+            let at = (
                 parcel.place,
-                share,
-                m * parcel.velocity,
+                tetrahedra.map(parcel.place).of(parcel.position),
             );
+            let (v, m) = (amounts.volume[row], amounts.mass[row]);
+            weights.add(mesh, &mut volume, at, v);
+            weights.add(mesh, &mut mass, at, m);
+            weights.add(mesh, &mut yielding, at, parcel.yielding * m);
+            weights.add(mesh, &mut momentum, at, m * parcel.velocity);
         }
-        let volumes = weights.gather(tetrahedra, &volume);
+        let volumes = weights.gather(mesh, &volume);
         let fractions = volumes.iter().zip(weights.volume());
         CellSolid {
             fraction: fractions.map(|(solid, whole)| solid / whole).collect(),
-            mass: weights.gather(tetrahedra, &mass),
-            yielding: weights.gather(tetrahedra, &yielding),
-            momentum: weights.gather(tetrahedra, &momentum),
+            mass: weights.gather(mesh, &mass),
+            yielding: weights.gather(mesh, &yielding),
+            momentum: weights.gather(mesh, &momentum),
         }
     }
 
@@ -151,12 +155,13 @@ impl Packer {
                 let changes = self.changes(&stress, &solid.mass, time);
                 let mean = solid.momentum.iter().zip(&solid.mass);
                 let mean: Vec<Vec3> = mean.map(|(p, &m)| per_mass(*p, m)).collect();
-                let changes = self.weights.spread(tetrahedra, &changes);
-                let mean = self.weights.spread(tetrahedra, &mean);
+                let changes = self.weights.spread(tetrahedra.mesh(), &changes);
+                let mean = self.weights.spread(tetrahedra.mesh(), &mean);
                 let mut given = Vec3::zeros();
                 for (row, parcel) in parcels.iter_mut().enumerate() {
                     let share = tetrahedra.map(parcel.place).of(parcel.position);
-                    let at = |values| self.weights.at(tetrahedra, values, parcel.place, share);
+                    let mesh = tetrahedra.mesh();
+                    let at = |values| self.weights.at(mesh, values, (parcel.place, share));
                     let slip = at(&mean) - parcel.velocity;
                     let change = snider(parcel.yielding * at(&changes), slip, *restitution);
                     parcel.velocity += change;
@@ -193,25 +198,82 @@ impl Packer {
                 free / mass * time * time * face.area / (density * face.distance())
             })
             .collect();
-        let stress = self.solve(law, &solid.fraction, &conductance)?;
-        let changes = self.changes(&stress, &solid.mass, time);
-        let changes = self.weights.spread(tetrahedra, &changes);
-        let passing = self.passing(&stress, &solid.fraction, &conductance, time);
-        let mut ways = vec![Vec3::zeros(); parcels.len()];
+        let curve = StressCurve::new(law);
+        let mesh = tetrahedra.mesh();
+        let begun: Vec<FlyingParcel> = parcels.to_vec();
+        let mut wanted = solid.fraction.clone();
         let mut given = Vec3::zeros();
-        for (row, parcel) in parcels.iter_mut().enumerate() {
-            let share = tetrahedra.map(parcel.place).of(parcel.position);
-            let change = self.weights.at(tetrahedra, &changes, parcel.place, share);
-            let inner = parcel.pushed(change);
-            given += amounts.mass[row] * change;
-            ways[row] = time * self.moved(tetrahedra, parcel.place, (share, inner), &passing);
+        let mut best = (f64::INFINITY, 0, Vec::new());
+        for round in 1..=ROUNDS {
+            let stress = match self.solve(law, &wanted, &conductance) {
+                Err(_) if round > 1 => break,
+                solved => solved?,
+            };
+            let changes = self.changes(&stress, &solid.mass, time);
+            let changes = self.weights.spread(mesh, &changes);
+            let passing = self.passing(&stress, &solid.fraction, &conductance, time);
+            let packer = &*self;
+            let felt: Vec<Vec3> = parcels
+                .par_iter_mut()
+                .zip(&begun)
+                .with_min_len(PIECE)
+                .map(|(parcel, begun)| {
+                    (parcel.position, parcel.place) = (begun.position, begun.place);
+                    let share = tetrahedra.map(parcel.place).of(parcel.position);
+                    let change = packer.weights.at(mesh, &changes, (parcel.place, share));
+                    let inner = parcel.yielding * change;
+                    let way = packer.moved(tetrahedra, parcel.place, (share, inner), &passing);
+                    parcel.shift(tetrahedra, time * way);
+                    change
+                })
+                .collect();
+            if round == 1 {
+                for ((parcel, change), mass) in parcels.iter_mut().zip(felt).zip(amounts.mass) {
+                    parcel.pushed(change);
+                    given += *mass * change;
+                }
+            }
+            let found = self.fraction(tetrahedra, parcels, amounts);
+            let fullest = found.iter().copied().fold(0.0, f64::max);
+            if fullest <= law.close_packing {
+                return Ok(given);
+            }
+            if fullest < best.0 {
+                let places = parcels.iter().map(|one| (one.position, one.place));
+                best = (fullest, round, places.collect());
+            }
+            if round - best.1 > PATIENCE {
+                break;
+            }
+            for ((wanted, found), stress) in wanted.iter_mut().zip(&found).zip(&stress) {
+                *wanted = (*wanted + MISSED * (found - curve.fraction(*stress).0)).max(0.0);
+            }
         }
-        parcels
-            .par_iter_mut()
-            .zip(&ways)
-            .with_min_len(PIECE)
-            .for_each(|(parcel, way)| parcel.shift(tetrahedra, *way));
+        for (parcel, (position, place)) in parcels.iter_mut().zip(best.2) {
+            (parcel.position, parcel.place) = (position, place);
+        }
         Ok(given)
+    }
+
+    /// Solid fraction of each cell.
+    fn fraction(
+        &self,
+        tetrahedra: &Tetrahedra,
+        parcels: &[FlyingParcel],
+        amounts: RowAmounts<'_>,
+    ) -> Vec<f64> {
+        let mesh = tetrahedra.mesh();
+        let mut volume: CornerValues<f64> = self.weights.corners(mesh);
+        for (parcel, &amount) in parcels.iter().zip(amounts.volume) {
+            let at = (
+                parcel.place,
+                tetrahedra.map(parcel.place).of(parcel.position),
+            );
+            self.weights.add(mesh, &mut volume, at, amount);
+        }
+        let volumes = self.weights.gather(mesh, &volume);
+        let fractions = volumes.iter().zip(self.weights.volume());
+        fractions.map(|(solid, whole)| solid / whole).collect()
     }
 
     /// Velocity in m/s with which the stress moves a parcel: along the normal of its tetrahedron's face it changes linearly from

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use calcine_coupler::checkpoint::StateFile;
+use calcine_coupler::mesh::tetrahedra::TetPlace;
 use calcine_coupler::physics::Vec3;
 
-use super::{NativeParcels, ParcelError, ParcelRows, TetPlace};
+use super::{NativeParcels, ParcelError, ParcelRows};
 use crate::gas::{NativeError, flat, vectors};
 use crate::particles::check::length;
 

@@ -1,11 +1,12 @@
 //! One step of all parcels through the mesh: flight by gravity, the force of the gas and drag, with impacts on walls.
 
+use calcine_coupler::mesh::tetrahedra::TetPlace;
 use calcine_coupler::parcels::ParcelImpact;
 use calcine_coupler::physics::Vec3;
 use rayon::prelude::*;
 
 use super::flight::Flight;
-use super::tetrahedra::{TetPlace, Tetrahedra};
+use super::tetrahedra::Tetrahedra;
 use super::track::WayEnd;
 use super::walls::{WallFaces, rebound};
 

@@ -5,20 +5,10 @@ use std::sync::Arc;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::locate::Locator;
+use calcine_coupler::mesh::tetrahedra::{TetMap, TetPlace};
 use calcine_coupler::physics::Vec3;
 
 use super::error::ParcelError;
-
-/// The tetrahedron in which a parcel is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TetPlace {
-    /// Cell.
-    pub cell: u32,
-    /// Face of the cell.
-    pub face: u32,
-    /// Edge of the face, from its point of this number to the next one.
-    pub edge: u32,
-}
 
 /// What lies on the other side of a side of a tetrahedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,38 +25,6 @@ pub enum Beyond {
 #[derive(Clone, Debug)]
 pub struct Tetrahedra {
     locator: Locator<Arc<Mesh>>,
-}
-
-/// A point by its barycentric coordinates: of the centres of cell and face, and of both ends of the edge.
-pub type Barycentric = [f64; 4];
-
-/// Map from places to barycentric coordinates of a tetrahedron, and its orientation.
-#[derive(Clone, Copy, Debug)]
-pub struct TetMap {
-    centre: Vec3,
-    rows: [Vec3; 3],
-    /// Six times the volume in m³; negative where a cell that is not star-shaped about its centre folds over.
-    pub determinant: f64,
-}
-
-impl TetMap {
-    /// Coordinates of a place.
-    #[inline]
-    pub fn of(&self, place: Vec3) -> Barycentric {
-        self.rates(place - self.centre, 1.0)
-    }
-
-    /// Their change along a way.
-    #[inline]
-    pub fn along(&self, way: Vec3) -> Barycentric {
-        self.rates(way, 0.0)
-    }
-
-    #[inline]
-    fn rates(&self, from: Vec3, sum: f64) -> Barycentric {
-        let [face, start, end] = self.rows.map(|row| row.dot(&from));
-        [sum - face - start - end, face, start, end]
-    }
 }
 
 impl Tetrahedra {
@@ -96,54 +54,25 @@ impl Tetrahedra {
 
     /// Tetrahedra of a cell.
     pub fn of_cell(&self, cell: usize) -> impl Iterator<Item = TetPlace> + '_ {
-        let mesh = self.mesh();
-        mesh.faces_of(cell).iter().flat_map(move |&face| {
-            let edges = mesh.face_points(face as usize).len() as u32;
-            (0..edges).map(move |edge| TetPlace {
-                cell: cell as u32,
-                face,
-                edge,
-            })
-        })
+        TetPlace::of_cell(self.mesh(), cell)
     }
 
     /// Point indices of the ends of the edge.
     #[inline]
     pub fn ends(&self, place: TetPlace) -> [u32; 2] {
-        let points = self.mesh().face_points(place.face as usize);
-        let next = (place.edge as usize + 1) % points.len();
-        [points[place.edge as usize], points[next]]
+        place.ends(self.mesh())
     }
 
     /// Corners in m: centres of cell and face, ends of the edge.
     #[inline]
     pub fn corners(&self, place: TetPlace) -> [Vec3; 4] {
-        let mesh = self.mesh();
-        let [start, end] = self
-            .ends(place)
-            .map(|at| mesh.topology().points[at as usize]);
-        let (cell, face) = (place.cell as usize, place.face as usize);
-        [
-            mesh.cell_centre()[cell],
-            mesh.face_centre()[face],
-            start,
-            end,
-        ]
+        place.corners(self.mesh())
     }
 
     /// Barycentric coordinates in a tetrahedron.
     #[inline]
     pub fn map(&self, place: TetPlace) -> TetMap {
-        let [centre, face, start, end] = self.corners(place);
-        let [face, start, end] = [face, start, end].map(|corner| corner - centre);
-        let crossed = [start.cross(&end), end.cross(&face), face.cross(&start)];
-        let determinant = face.dot(&crossed[0]);
-        let side = self.mesh().side(place.cell as usize, place.face as usize);
-        TetMap {
-            centre,
-            rows: crossed.map(|row| row / determinant),
-            determinant: side * determinant,
-        }
+        place.map(self.mesh())
     }
 
     /// Area vector in m² of the side in the cell's face, out of the cell.
@@ -235,14 +164,6 @@ impl Tetrahedra {
     /// The tetrahedron that holds a place, or of its cell the one that comes nearest to it; `None` outside the mesh.
     pub fn locate(&self, place: Vec3) -> Option<TetPlace> {
         let cell = self.locator.cell_at(place)?;
-        let mut best = (f64::NEG_INFINITY, TetPlace::default());
-        for found in self.of_cell(cell) {
-            let map = self.map(found);
-            let least = map.of(place).into_iter().fold(f64::INFINITY, f64::min);
-            if map.determinant > 0.0 && least > best.0 {
-                best = (least, found);
-            }
-        }
-        best.0.is_finite().then_some(best.1)
+        Some(TetPlace::nearest(self.mesh(), cell, place)?.0)
     }
 }

@@ -1,8 +1,9 @@
 //! Straight ways through the tetrahedra of a mesh.
 
+use calcine_coupler::mesh::tetrahedra::TetPlace;
 use calcine_coupler::physics::Vec3;
 
-use super::tetrahedra::{Beyond, TetPlace, Tetrahedra};
+use super::tetrahedra::{Beyond, Tetrahedra};
 
 /// Sides in a row that a way may cross without getting on: around an edge or a corner of the mesh there are fewer.
 const STANDSTILL: u32 = 256;

@@ -5,7 +5,6 @@ pub mod dem;
 mod state;
 
 use std::path::Path;
-use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
@@ -420,14 +419,6 @@ impl Part for NativeParticles {
             self.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
         })
-    }
-
-    fn processor_time(&self) -> Duration {
-        Duration::ZERO
-    }
-
-    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
-        Ok(())
     }
 }
 

@@ -26,7 +26,7 @@ const EXCHANGE: &[Key] = &[
 
 #[rustfmt::skip]
 pub(super) const COUPLING: &[Key] = &[
-    key("mapping", Choice(words::<MappingSpec>), Required, "Mapping of a particle onto cells: exact volumes, satellite points, or its centre.", "\"overlap\""),
+    key("mapping", Choice(words::<MappingSpec>), Without("`linear` for parcels; required for others"), "Mapping of a particle onto cells: exact volumes, satellite points, its centre, or linear weights of its centre, whatever its size.", "\"overlap\""),
     key("smoother", Table(SMOOTHER), Without("see its keys"), "Smoother of the solid fraction.", "{ max_solid_fraction = 0.64 }"),
     key("exchange", Table(EXCHANGE), Without("see its keys"), "Repetition of windows.", "{ tolerance = 1e-3, attempts = 10 }"),
     key("window_drag", Choice(words::<WindowDrag>), Default("constant"), "How drag acts on particles that move within a window: as a constant force, the mean over the window, or following each particle's own velocity step by step. External particles must take it so.", "\"following\""),

@@ -105,6 +105,9 @@ impl KeyValue {
 fn quantity(dimension: Dimension) -> String {
     match dimension {
         Dimension::NONE => "number".into(),
+        // No single number of a case turns: those that do are vectors.
+        Dimension::ANGULAR_VELOCITY => "rate, 1/s".into(),
+        _ if noun(dimension) == dimension.unit() => dimension.unit(),
         _ => format!("{}, {}", noun(dimension), dimension.unit()),
     }
 }

@@ -18,7 +18,7 @@ fn ask(kind: &CaseKind, root: &TableReader<'_>, path: &Path, text: &str) {
             crate::case::sections::tuning::tuning(root, path, text, String::new());
         }
         "flowsheet" => {
-            crate::case::plant::plant(root, path, text, String::new());
+            crate::case::plant::plant(root, path, text, String::new(), path.parent());
         }
         other => panic!("which reader takes a case of kind \"{other}\"?"),
     }

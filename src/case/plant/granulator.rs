@@ -4,7 +4,7 @@ use calcine_flowsheet::population::{
     Aggregation, GrowthLaw, LinearGrowth, ParticleBreakage, TabulatedGrowth, TabulatedKernel,
     UniformGrowth,
 };
-use calcine_flowsheet::units::{BedHeat, BedLevel, Granulator, Overspray};
+use calcine_flowsheet::units::{BedHeat, BedKernel, BedLevel, Granulator, Overspray};
 use calcine_flowsheet::{ProcessUnit, StreamLayout};
 
 use super::layout::refused;
@@ -32,6 +32,7 @@ pub(super) fn granulator(
         false => None,
     };
     let kernel = kernel(own);
+    let collisions = collisions(own);
     let breakage = match own.has("breakage") {
         true => Some(own.plain_law("breakage", &own.laws().breakage)?),
         false => None,
@@ -56,6 +57,9 @@ pub(super) fn granulator(
     }
     if let Some(kernel) = kernel? {
         made = made.with_process(Box::new(Aggregation::new(Box::new(kernel))));
+    }
+    if let Some(collisions) = collisions? {
+        made = made.with_bed_kernel(collisions);
     }
     if let Some(law) = breakage {
         made = made.with_process(Box::new(ParticleBreakage::new(law.make())));
@@ -119,8 +123,23 @@ fn kernel(own: &TableReader<'_>) -> Option<Option<TabulatedKernel>> {
         .map(Some)
 }
 
+/// Collisions that a bed counts; `Some(None)` where the case has none.
+fn collisions(own: &TableReader<'_>) -> Option<Option<BedKernel>> {
+    if !own.has("collisions") {
+        return Some(None);
+    }
+    let table = own.table("collisions")?;
+    let (bed, efficiency) = (table.text("bed"), table.number("efficiency"));
+    table.finish();
+    Some(Some(BedKernel::new(bed?.to_owned(), efficiency?)))
+}
+
 /// A list of quantities.
-fn quantities(table: &TableReader<'_>, key: &str, dimension: Dimension) -> Option<Vec<f64>> {
+pub(super) fn quantities(
+    table: &TableReader<'_>,
+    key: &str,
+    dimension: Dimension,
+) -> Option<Vec<f64>> {
     let texts = table.texts(key)?.into_iter();
     let value = |text: String| table.value(key, &toml_edit::Value::from(text), dimension);
     texts.map(value).collect()

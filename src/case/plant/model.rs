@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use calcine_flowsheet::{Integrator, Plant, WaveformSettings};
+use calcine_flowsheet::{Integrator, MeasuredDistribution, Plant, WaveformSettings};
 
+use super::bed::PlantBedSpec;
 use super::words::{LimitField, OverTime, PlantField, SteadyField, SteadyFrom};
 use crate::case::model::ToleranceBand;
 
@@ -34,6 +35,8 @@ pub struct PlantCase {
     pub plant: Plant,
     /// Kinds of its units, in their order.
     pub kinds: Vec<&'static str>,
+    /// Beds that are cases of their own, in the order of their units.
+    pub beds: Vec<PlantBedSpec>,
     /// Time in s between rows of the series.
     pub row_every: f64,
     /// Time in s between distributions; without it at the start and the end alone.
@@ -44,6 +47,8 @@ pub struct PlantCase {
     pub steady: Option<SteadySpec>,
     /// Steady states over a key.
     pub continuation: Option<ContinuationSpec>,
+    /// Keys that are tuned to measurements.
+    pub tuning: Option<PlantTuningSpec>,
 }
 
 /// How a plant is followed.
@@ -154,4 +159,67 @@ impl ContinuationSpec {
         let keys = self.keys.iter();
         keys.map(|key| format!("{key}={text}")).collect()
     }
+}
+
+/// Keys of a plant that are tuned to measurements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantTuningSpec {
+    /// True where the measurements are of the steady state.
+    pub steady: bool,
+    /// The keys.
+    pub parameters: Vec<PlantTunedKey>,
+    /// Sieve analyses.
+    pub distributions: Vec<MeasuredDistribution>,
+    /// Other measurements.
+    pub values: Vec<PlantMeasuredValues>,
+    /// Sets of parameters that are tried, and how many of them are followed.
+    pub sets: [usize; 2],
+    /// Seed of the sets.
+    pub seed: u64,
+    /// Probability with which intervals hold the true value.
+    pub level: f64,
+    /// Files of measurements.
+    pub files: Vec<PathBuf>,
+}
+
+/// A key that is tuned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantTunedKey {
+    /// The key, as `--set` names it.
+    pub key: String,
+    /// Bounds in the unit of the case.
+    pub bounds: [f64; 2],
+    /// The unit; empty for plain numbers.
+    pub unit: String,
+    /// Whether it is searched by its logarithm.
+    pub logarithmic: bool,
+}
+
+impl PlantTunedKey {
+    /// The setting of `--set` that stands for a value.
+    pub fn setting(&self, value: f64) -> String {
+        match self.unit.as_str() {
+            "" => format!("{}={value:?}", self.key),
+            unit => format!("{}={value:?} {unit}", self.key),
+        }
+    }
+}
+
+/// Values of one field that were measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantMeasuredValues {
+    /// What they are called.
+    pub name: String,
+    /// Of what.
+    pub of: PlantPlace,
+    /// Which field.
+    pub field: PlantField,
+    /// Compound of the field `compound`.
+    pub compound: Option<usize>,
+    /// Unit: SI.
+    pub unit: String,
+    /// Times in s, and values.
+    pub points: Vec<(f64, f64)>,
+    /// Standard deviation of a value.
+    pub deviation: f64,
 }

@@ -112,12 +112,48 @@ fn over_time(
     kind: &'static str,
     known: &Measurable<'_>,
 ) -> Option<(PlantMeasure, Dimension, String)> {
-    let name = reader.text(kind);
+    let place = place(reader, kind, known.plant);
     reader.need("field");
-    let field = reader.choice::<PlantField>("field");
-    let compound = reader.text("of");
     let (over, from) = (reader.choice::<OverTime>("over"), reader.number("from"));
-    let (name, plant) = (name?, known.plant?);
+    let (field, compound) = field(reader, known.plant)?;
+    if let Some(PlantPlace::Unit(unit)) = place
+        && known.plant.is_some_and(|plant| plant.controls(unit)) != (field == PlantField::Output)
+    {
+        let help = "measure the field \"output\" of controllers, and others of other units";
+        reader.fail("field", "does not go with this unit", help);
+    }
+    if let (Some(PlantPlace::Stream(_)), PlantField::Output) = (place, field) {
+        let help = "measure it of a controller, with `unit`";
+        reader.fail("field", "does not go with a stream", help);
+    }
+    let over = over?;
+    if over == OverTime::Last && reader.has("from") {
+        let help = "remove it, or add `over`";
+        reader.fail("from", "has no effect on a last value", help);
+    }
+    let of = place?;
+    let dimension = match over {
+        OverTime::Period => Dimension::TIME,
+        _ => dimension_of(field, of),
+    };
+    let measure = PlantMeasure::OverTime {
+        of,
+        field,
+        compound,
+        over,
+        from: from?,
+    };
+    Some((measure, dimension, unit_of(dimension)))
+}
+
+/// The stream or unit that a key of this kind names.
+pub(super) fn place(
+    reader: &TableReader<'_>,
+    kind: &'static str,
+    plant: Option<&Plant>,
+) -> Option<PlantPlace> {
+    let name = reader.text(kind);
+    let (name, plant) = (name?, plant?);
     let (place, all): (_, Vec<&str>) = match kind {
         "stream" => (
             plant.stream(name).map(PlantPlace::Stream),
@@ -138,11 +174,22 @@ fn over_time(
     }
     if let Some(PlantPlace::Unit(unit)) = place
         && !plant.holds(unit)
+        && !plant.controls(unit)
     {
         let help = "measure a stream, or a granulator or bunker";
         reader.fail(kind, format!("is \"{name}\", which holds nothing"), help);
     }
-    let field = field?;
+    place
+}
+
+/// The field that is measured, with the compound that it is of.
+pub(super) fn field(
+    reader: &TableReader<'_>,
+    plant: Option<&Plant>,
+) -> Option<(PlantField, Option<usize>)> {
+    let field = reader.choice::<PlantField>("field");
+    let compound = reader.text("of");
+    let (field, plant) = (field?, plant?);
     let compounds = plant.layout().compounds();
     let names: Vec<&str> = compounds.iter().map(|one| one.name.as_str()).collect();
     let found = compound.and_then(|name| names.iter().position(|own| *own == name));
@@ -162,33 +209,42 @@ fn over_time(
             reader.fail("of", "does not go with this field", help);
         }
     }
-    let over = over?;
-    if over == OverTime::Last && reader.has("from") {
-        let help = "remove it, or add `over`";
-        reader.fail("from", "has no effect on a last value", help);
-    }
-    let amount = match place? {
+    Some((field, found))
+}
+
+/// The dimension of a field of a stream or a unit.
+pub(super) fn dimension_of(field: PlantField, of: PlantPlace) -> Dimension {
+    let amount = match of {
         PlantPlace::Stream(_) => Dimension::MASS_FLOW,
         PlantPlace::Unit(_) => Dimension::MASS,
     };
-    let dimension = match (over, field) {
-        (OverTime::Period, _) => Dimension::TIME,
-        (_, PlantField::Mass | PlantField::Solids | PlantField::Compound) => amount,
-        (_, PlantField::Moisture) => Dimension::NONE,
-        (_, PlantField::Temperature) => Dimension::TEMPERATURE,
-        (_, PlantField::MeanDiameter | PlantField::Quantile(_)) => Dimension::LENGTH,
-    };
-    let measure = PlantMeasure::OverTime {
-        of: place?,
-        field,
-        compound: found,
-        over,
-        from: from?,
-    };
-    Some((measure, dimension, unit_of(dimension)))
+    match field {
+        PlantField::Mass | PlantField::Solids | PlantField::Compound => amount,
+        PlantField::Moisture | PlantField::Output => Dimension::NONE,
+        PlantField::Temperature => Dimension::TEMPERATURE,
+        PlantField::MeanDiameter | PlantField::Quantile(_) => Dimension::LENGTH,
+    }
 }
 
-fn unit_of(dimension: Dimension) -> String {
+/// A text of a number and a unit, which may be empty.
+pub(super) fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let end = text.find(|c: char| c.is_alphabetic() || c.is_whitespace() || c == '%');
+    // "1e3": the letter belongs to the number; so does the one of "1e-9 1/s".
+    let mut split = match text.parse::<f64>() {
+        Ok(_) => text.len(),
+        Err(_) => end.unwrap_or(text.len()),
+    };
+    if let Some((number, _)) = text.split_once(char::is_whitespace)
+        && number.parse::<f64>().is_ok()
+    {
+        split = number.len();
+    }
+    let (number, rest) = text.split_at(split);
+    Some((number.parse::<f64>().ok()?, rest.trim()))
+}
+
+pub(super) fn unit_of(dimension: Dimension) -> String {
     match dimension {
         Dimension::NONE => "1".into(),
         other => other.unit(),
@@ -225,20 +281,11 @@ pub(super) fn continuation(root: &TableReader<'_>) -> Option<ContinuationSpec> {
     let mut values: Vec<f64> = Vec::new();
     let mut unit: Option<String> = None;
     for text in &texts {
-        let text = text.trim();
-        let end = text.find(|c: char| c.is_alphabetic() || c.is_whitespace() || c == '%');
-        // "1e3": the letter belongs to the number.
-        let split = match text.parse::<f64>() {
-            Ok(_) => text.len(),
-            Err(_) => end.unwrap_or(text.len()),
-        };
-        let (number, rest) = text.split_at(split);
-        let Ok(number) = number.parse::<f64>() else {
+        let Some((number, rest)) = number_and_unit(text) else {
             let rule = format!("has \"{text}\", which is no number with a unit");
             table.fail("values", rule, "for example \"4\" or \"2.2 mm\"");
             return None;
         };
-        let rest = rest.trim();
         if unit.get_or_insert_with(|| rest.to_owned()) != rest {
             let rule = format!("has \"{text}\", whose unit is not that of the first");
             table.fail("values", rule, "write all values in one unit");

@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use calcine_flowsheet::{Plant, TearAcceleration, WaveformSettings};
+use sha2::{Digest, Sha256};
 
+use super::bed::PlantBedSpec;
 use super::layout::{layout, refused};
 use super::model::{PlantCase, PlantMethod};
 use super::quantities::{Measurable, continuation, quantities, steady};
 use super::streams::streams;
+use super::tuning::tuning;
 use super::units::units;
 use super::words::{PlantIntegrator, RecycleMethod, TearMethod};
 use crate::case::keys::{KINDS, kind_named};
@@ -42,11 +45,38 @@ fn parse_plant_with(
     laws: &LawCatalogue,
 ) -> Result<PlantCase, CaseErrors> {
     let kind = kind_named("flowsheet").unwrap_or(&KINDS[0]);
+    let folder = path.parent().unwrap_or(Path::new("."));
     let (mut case, changes) = parse_as(path, text, set, kind, laws, |root, effective, hash| {
-        plant(root, path, effective, hash)
+        plant(root, path, effective, hash, Some(folder))
     })?;
     case.changes = changes;
+    case.hash = with_beds(&case);
     Ok(case)
+}
+
+/// Reads the case of a plant that has run: the cases of its beds, which may lie elsewhere by now, are left out.
+pub fn read_plant_results(path: &Path) -> Result<PlantCase, CaseErrors> {
+    let kind = kind_named("flowsheet").unwrap_or(&KINDS[0]);
+    let laws = LawCatalogue::default();
+    let text = text_of(path)?;
+    let (case, _) = parse_as(path, &text, &[], kind, &laws, |root, effective, hash| {
+        plant(root, path, effective, hash, None)
+    })?;
+    Ok(case)
+}
+
+/// The hash extended by those of its beds, so that a changed bed is not taken for the same case.
+fn with_beds(case: &PlantCase) -> String {
+    if case.beds.is_empty() {
+        return case.hash.clone();
+    }
+    let mut digest = Sha256::new();
+    digest.update(case.hash.as_bytes());
+    for bed in &case.beds {
+        digest.update(bed.hash.as_bytes());
+    }
+    let bytes = digest.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Reads all sections; `None` where one could not be read (its problems are recorded).
@@ -55,6 +85,7 @@ pub(in crate::case) fn plant(
     path: &Path,
     effective: &str,
     hash: String,
+    beds_in: Option<&Path>,
 ) -> Option<PlantCase> {
     if root.whole("format").is_some_and(|format| format != FORMAT) {
         let rule = "is not 1, the only one there is";
@@ -72,13 +103,36 @@ pub(in crate::case) fn plant(
         table.finish();
         (end, every, wall)
     });
-    let method = method(root);
+    let (method, tears) = method(root).unzip();
+    let tears = tears.flatten();
     let layout = layout(root);
-    let read = layout.as_ref().map(|(layout, _)| units(root, layout));
+    let read = layout
+        .as_ref()
+        .map(|(layout, _)| units(root, layout, beds_in));
     let connections = streams(root, read.as_deref().unwrap_or_default());
     let steady = steady(root);
     let continuation = continuation(root);
     let kinds: Vec<&'static str> = read.iter().flatten().map(|unit| unit.kind).collect();
+    let beds = read.iter().flatten().filter_map(|unit| unit.bed.clone());
+    let beds: Vec<PlantBedSpec> = beds.collect();
+    if let Some(bed) = beds.first() {
+        for (section, is_there) in [
+            ("steady", steady.is_some()),
+            ("continuation", continuation.is_some()),
+        ] {
+            if is_there {
+                let rule = format!(
+                    "cannot be with the bed \"{}\", which exchanges with the plant at intervals",
+                    bed.unit
+                );
+                root.fail(
+                    section,
+                    rule,
+                    "remove it, or put a granulator or a bunker in the bed's place",
+                );
+            }
+        }
+    }
     let units = read.and_then(|read| {
         let made = read.into_iter().map(|one| Some((one.name, one.unit?)));
         made.collect::<Option<Vec<_>>>()
@@ -92,7 +146,14 @@ pub(in crate::case) fn plant(
                     refused(root, "units", error);
                 }
             });
-            told.ok()
+            told.ok().and_then(|plant| match &tears {
+                None => Some(plant),
+                Some(names) => {
+                    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                    let torn = plant.torn_at(&names);
+                    torn.map_err(|error| refused(root, "method", &error)).ok()
+                }
+            })
         }
         _ => None,
     };
@@ -107,6 +168,13 @@ pub(in crate::case) fn plant(
         continuation: continuation.as_ref().map(|one| one.unit.as_str()),
     };
     let quantities = quantities(root, &known);
+    let tuning = match beds_in {
+        Some(folder) => tuning(root, plant.as_ref(), folder, time.and_then(|time| time.0)),
+        None => {
+            root.raw("tuning");
+            Some(None)
+        }
+    };
     let (end, checkpoint_every, checkpoint_wall) = time?;
     let (every, distributions_every) = output?;
     Some(PlantCase {
@@ -124,15 +192,17 @@ pub(in crate::case) fn plant(
         method: method?,
         plant: plant?,
         kinds,
+        beds,
         row_every: every?,
         distributions_every,
         quantities,
         steady,
         continuation,
+        tuning: tuning?,
     })
 }
 
-fn method(root: &TableReader<'_>) -> Option<PlantMethod> {
+fn method(root: &TableReader<'_>) -> Option<(PlantMethod, Option<Vec<String>>)> {
     let table = root.table_or_empty("method")?;
     let recycles = table.choice::<RecycleMethod>("recycles");
     let integrator = table.choice::<PlantIntegrator>("integrator");
@@ -141,13 +211,18 @@ fn method(root: &TableReader<'_>) -> Option<PlantMethod> {
         Some(RecycleMethod::Waveform) => waveform(&table).map(Some),
         _ => Some(None),
     };
+    let tears = match table.has("tears") {
+        true => Some(table.texts("tears")?),
+        false => None,
+    };
     table.finish();
-    Some(PlantMethod {
+    let method = Some(PlantMethod {
         integrator: integrator?.0,
         tolerance: tolerance?,
         waveform: windows?.filter(|_| recycles == Some(RecycleMethod::Waveform)),
     })
-    .filter(|_| recycles.is_some())
+    .filter(|_| recycles.is_some());
+    Some((method?, tears))
 }
 
 fn waveform(method: &TableReader<'_>) -> Option<WaveformSettings> {

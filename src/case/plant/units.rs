@@ -1,5 +1,7 @@
 //! `[[units]]`.
 
+use std::path::Path;
+
 use calcine_flowsheet::cyclone::MuschelknautzCyclone;
 use calcine_flowsheet::units::{
     Bunker, Cyclone, Discharge, Dryer, Mill, Mixer, PlantInlet, PlantOutlet, Screen, Splitter,
@@ -7,6 +9,8 @@ use calcine_flowsheet::units::{
 };
 use calcine_flowsheet::{ProcessUnit, StreamLayout, Timetable};
 
+use super::bed::{PlantBedSpec, bed};
+use super::controller::controller;
 use super::granulator::granulator;
 use super::layout::refused;
 use super::solids::{add_solids, by_compound, numbers};
@@ -23,10 +27,16 @@ pub(super) struct ReadUnit<'a> {
     pub unit: Option<Box<dyn ProcessUnit>>,
     /// Its table.
     pub table: TableReader<'a>,
+    /// Of a bed: what its run needs.
+    pub bed: Option<PlantBedSpec>,
 }
 
-/// All units.
-pub(super) fn units<'a>(root: &TableReader<'a>, layout: &StreamLayout) -> Vec<ReadUnit<'a>> {
+/// All units; cases of beds lie relative to `folder`, and are not read without one.
+pub(super) fn units<'a>(
+    root: &TableReader<'a>,
+    layout: &StreamLayout,
+    folder: Option<&Path>,
+) -> Vec<ReadUnit<'a>> {
     let mut all: Vec<ReadUnit<'a>> = Vec::new();
     for table in root.tables("units") {
         let name = table.text("name").unwrap_or_default().to_owned();
@@ -39,7 +49,18 @@ pub(super) fn units<'a>(root: &TableReader<'a>, layout: &StreamLayout) -> Vec<Re
             table.fail("name", rule, "names of units must differ");
         }
         let kind = table.exactly_one();
-        let made = kind.and_then(|kind| unit(&table, kind, layout));
+        let mut spec = None;
+        let made = match kind {
+            Some("bed") => table.table("bed").and_then(|own| {
+                let made = bed(&own, &name, layout, folder);
+                own.finish();
+                let (unit, read) = made?;
+                spec = Some(read);
+                Some(unit)
+            }),
+            Some(kind) => unit(&table, kind, layout),
+            None => None,
+        };
         table.finish();
         let kind = kind.unwrap_or_default();
         let prepared = made.and_then(|mut unit| {
@@ -52,6 +73,7 @@ pub(super) fn units<'a>(root: &TableReader<'a>, layout: &StreamLayout) -> Vec<Re
             kind,
             unit: prepared,
             table,
+            bed: spec,
         });
     }
     all
@@ -82,8 +104,12 @@ fn unit(
             .whole("inlets")
             .and_then(|count| usize::try_from(count).ok())
             .map(|inlets| -> Box<dyn ProcessUnit> { Box::new(Mixer { inlets }) }),
-        "splitter" => numbers(&own, "shares")
-            .map(|shares| -> Box<dyn ProcessUnit> { Box::new(Splitter { shares }) }),
+        "splitter" => {
+            let controller = own.text("controller").map(str::to_owned);
+            numbers(&own, "shares")
+                .map(|shares| -> Box<dyn ProcessUnit> { Box::new(Splitter { shares, controller }) })
+        }
+        "controller" => controller(&own, layout),
         "granulator" => granulator(&own, layout),
         "dryer" => own
             .number("moisture")
@@ -124,7 +150,11 @@ fn row(table: &TableReader<'_>, amount: &str, layout: &StreamLayout) -> Option<V
 fn inlet(own: &TableReader<'_>, layout: &StreamLayout) -> Option<Box<dyn ProcessUnit>> {
     let stream = row(own, "flow", layout);
     let factor = timetable(own, "factor");
-    Some(Box::new(PlantInlet::new(stream?, factor?)))
+    let made = PlantInlet::new(stream?, factor?);
+    Some(Box::new(match own.text("controller") {
+        Some(name) => made.with_controller(name.to_owned()),
+        None => made,
+    }))
 }
 
 fn bunker(own: &TableReader<'_>, layout: &StreamLayout) -> Option<Box<dyn ProcessUnit>> {
@@ -139,6 +169,10 @@ fn bunker(own: &TableReader<'_>, layout: &StreamLayout) -> Option<Box<dyn Proces
             let made = match table.exactly_one() {
                 Some("residence") => table.number("residence").map(Discharge::Residence),
                 Some("adaptive") => table.number("adaptive").map(Discharge::Adaptive),
+                Some("controller") => {
+                    let name = table.text("controller");
+                    name.map(|name| Discharge::Controlled(name.to_owned()))
+                }
                 Some(_) => timetable(&table, "rate").map(Discharge::Rate),
                 None => None,
             };

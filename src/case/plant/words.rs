@@ -66,6 +66,17 @@ pub enum PlantField {
     MeanDiameter,
     /// Diameters below which 10, 50 and 90 % of the mass lie.
     Quantile(u8),
+    /// Output of a controller.
+    Output,
+}
+
+/// `tuning.state`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlantTunedState {
+    /// The run at the times of the measurements.
+    Run,
+    /// The steady state.
+    Steady,
 }
 
 /// What a quantity takes of a series.
@@ -146,7 +157,9 @@ case_words! {
         "d10" => PlantField::Quantile(10),
         "d50" => PlantField::Quantile(50),
         "d90" => PlantField::Quantile(90),
+        "output" => PlantField::Output,
     }
+    PlantTunedState { "run" => PlantTunedState::Run, "steady" => PlantTunedState::Steady }
     OverTime {
         "last" => OverTime::Last,
         "mean" => OverTime::Mean,

@@ -11,12 +11,17 @@ use calcine_coupler::time::GasStorage;
 use super::common::existing;
 use super::zone::zones;
 use crate::case::model::{
-    Coupling, ExternalProgram, ExternalSpec, Laws, MotionSpec, Population, TimeSpec,
+    Coupling, ExternalProgram, ExternalSpec, Laws, MappingSpec, MotionSpec, Population, TimeSpec,
 };
 use crate::case::table::TableReader;
 
 pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     let section = root.table("coupling")?;
+    let parcels = root.has("motion") && root.table("motion").is_some_and(|one| one.has("parcels"));
+    if !parcels {
+        section.need("mapping");
+    }
+    let implied = parcels && !section.has("mapping");
     let mapping = section.choice("mapping");
     let smoother = section.table_or_empty("smoother")?;
     let max_solid_fraction = smoother.number("max_solid_fraction");
@@ -33,7 +38,11 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     let deadline = section.wall_time("deadline");
     section.finish();
     Some(Coupling {
-        mapping: mapping?,
+        mapping: if implied {
+            MappingSpec::Linear
+        } else {
+            mapping?
+        },
         max_solid_fraction: max_solid_fraction?,
         excluded,
         smoother_tolerance: smoother_tolerance?,

@@ -11,6 +11,33 @@ use crate::case::units::{Dimension, UnitError, meant, quantities, shown};
 /// Of a rate as of an angular velocity.
 const PER_SECOND: Dimension = Dimension([0, 0, -1, 0, 0]);
 
+/// True of a rate in 1/s, which has the dimension of an angular velocity.
+fn is_rate(key: &str, dimension: Dimension) -> bool {
+    dimension == PER_SECOND && key != "angular_velocity"
+}
+
+/// A dimension in words with its article.
+fn words_of(key: &str, dimension: Dimension) -> String {
+    match is_rate(key, dimension) {
+        true => "a rate in 1/s".into(),
+        false => dimension.words(),
+    }
+}
+
+fn example_of(key: &str, dimension: Dimension) -> &'static str {
+    match is_rate(key, dimension) {
+        true => "1e-3 1/s",
+        false => dimension.example(),
+    }
+}
+
+fn unit_of(key: &str, dimension: Dimension) -> String {
+    match is_rate(key, dimension) {
+        true => "1/s".into(),
+        false => dimension.unit(),
+    }
+}
+
 impl TableReader<'_> {
     /// A quantity with its unit, in SI, or a plain number, as it is declared; without it its default.
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -40,7 +67,7 @@ impl TableReader<'_> {
             };
         };
         let Some(value) = item.as_value() else {
-            let needs = format!("{} such as {}", dimension.words(), key.example);
+            let needs = format!("{} such as {}", words_of(key.name, dimension), key.example);
             self.wrong_type(key.name, &needs, item);
             return None;
         };
@@ -53,7 +80,7 @@ impl TableReader<'_> {
     fn within(&self, key: &str, value: f64, dimension: Dimension, bound: Bound) -> bool {
         let holds = bound.holds(value);
         if !holds {
-            let rule = format!("is {} {}", shown(value), dimension.unit());
+            let rule = format!("is {} {}", shown(value), unit_of(key, dimension));
             let absolute = match key == "pressure" && dimension == Dimension::PRESSURE {
                 true => ": pressures are absolute, 1 atm at the ground",
                 false => "",
@@ -219,7 +246,7 @@ impl TableReader<'_> {
 
     /// One value of a key (or of an entry of its list) as a quantity.
     pub fn value(&self, key: &str, value: &Value, dimension: Dimension) -> Option<f64> {
-        let example = dimension.example();
+        let example = example_of(key, dimension);
         let plain = value
             .as_float()
             .or_else(|| value.as_integer().map(|number| number as f64));
@@ -237,7 +264,7 @@ impl TableReader<'_> {
         let Some(text) = value.as_str() else {
             let rule = format!(
                 "needs {} such as \"{example}\", but is {}",
-                dimension.words(),
+                words_of(key, dimension),
                 value.type_name()
             );
             self.unread(key, rule, format!("write \"{example}\""));
@@ -256,7 +283,7 @@ impl TableReader<'_> {
     }
 
     fn parsed(&self, key: &str, text: &str, dimension: Dimension) -> Option<Vec<f64>> {
-        let (words, example) = (dimension.words(), dimension.example());
+        let (words, example) = (words_of(key, dimension), example_of(key, dimension));
         if let Some(point) = with_a_comma(text) {
             self.unread(
                 key,

@@ -1,7 +1,9 @@
 //! A granulator.
 
+mod bed_kernel;
 mod sizes;
 
+pub use bed_kernel::BedKernel;
 pub use sizes::Overspray;
 
 use sizes::{BedSizes, Turnover};
@@ -9,7 +11,7 @@ use sizes::{BedSizes, Turnover};
 use crate::distribution::OUTSIDE;
 use crate::population::{GrowthLaw, GrowthScheme, SizeProcess};
 use crate::sums::{add_in_turns, sum};
-use crate::{PlantError, ProcessUnit, StreamLayout, UnitView};
+use crate::{PlantError, ProcessUnit, SignalKind, StreamLayout, UnitView};
 
 /// How much a granulator holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +51,8 @@ pub struct Granulator {
     heat: BedHeat,
     /// Mass of the content in kg.
     held: f64,
+    /// Aggregation by what a bed of the plant returns.
+    bed_kernel: Option<BedKernel>,
 }
 
 const FEED: usize = 0;
@@ -66,7 +70,14 @@ impl Granulator {
             level: BedLevel::Fixed,
             heat: BedHeat::Held(300.0),
             held: 0.0,
+            bed_kernel: None,
         }
+    }
+
+    /// With aggregation by the collisions that a bed of the plant counts.
+    pub fn with_bed_kernel(mut self, kernel: BedKernel) -> Self {
+        self.bed_kernel = Some(kernel);
+        self
     }
 
     /// With volatile liquid of so many kg per kg of solids in bed and product.
@@ -213,8 +224,19 @@ impl ProcessUnit for Granulator {
             let allowed = "it is finite and not negative";
             return Err(Self::refuse(name, "moisture", self.moisture, allowed));
         }
-        self.sizes
-            .prepare(layout, &format!("granulator \"{name}\""))
+        let place = format!("granulator \"{name}\"");
+        self.sizes.prepare(layout, &place)?;
+        match &mut self.bed_kernel {
+            Some(kernel) => kernel.prepare(layout.grid(), self.sizes.particles(), &place),
+            None => Ok(()),
+        }
+    }
+
+    fn listens_to(&self) -> Vec<(String, SignalKind)> {
+        let kernel = self.bed_kernel.iter();
+        kernel
+            .map(|one| (one.bed.clone(), SignalKind::Kernel))
+            .collect()
     }
 
     fn unknowns(&self, layout: &StreamLayout) -> usize {
@@ -298,6 +320,11 @@ impl ProcessUnit for Granulator {
             }
         }
         self.sizes.add(layout, view.state, &turnover, rates);
+        if let Some(kernel) = &self.bed_kernel {
+            let masses = &view.state[..layout.solids()];
+            let rates = &mut rates[..layout.solids()];
+            kernel.add(view.signal(0), layout.inner(), masses, rates)?;
+        }
         if matches!(self.heat, BedHeat::Balanced(_)) {
             let place = layout.enthalpy();
             let enters: f64 = view.all_inlets().map(|s| s[place]).sum();
@@ -356,7 +383,11 @@ impl ProcessUnit for Granulator {
     fn fastest(&self, view: &UnitView<'_>, _out: &[f64]) -> f64 {
         let turnover = self.turnover(view);
         let mass = sum(&view.state[..view.layout.solids()]);
-        turnover.product / mass + self.sizes.fastest(view.layout, view.state, &turnover)
+        let kernel = self.bed_kernel.as_ref().map_or(0.0, |kernel| {
+            let masses = &view.state[..view.layout.solids()];
+            kernel.fastest(view.signal(0), view.layout.inner(), masses)
+        });
+        kernel + turnover.product / mass + self.sizes.fastest(view.layout, view.state, &turnover)
     }
 
     fn invariants(&self) -> usize {

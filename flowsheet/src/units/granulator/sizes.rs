@@ -136,6 +136,11 @@ impl BedSizes {
         Ok(())
     }
 
+    /// Mass in kg of a particle of each class.
+    pub(super) fn particles(&self) -> &[f64] {
+        &self.particle
+    }
+
     /// Adds the rates of growth, attrition, returning dust, and all processes.
     pub(super) fn add(
         &self,

@@ -4,7 +4,7 @@ mod output;
 mod solids;
 mod units;
 
-use self::output::{CONTINUATION, OUTPUT, QUANTITIES, STEADY};
+use self::output::{CONTINUATION, OUTPUT, QUANTITIES, STEADY, TUNING};
 use self::units::UNITS;
 use super::prelude::*;
 
@@ -25,6 +25,7 @@ pub(super) const FLOWSHEET: &[Key] = &[
     key("quantities", Tables(QUANTITIES), Without("none"), "Quantities of interest.", "[[quantities]]"),
     key("steady", Table(STEADY), Without("none is looked for"), "The steady state next to the end of the run, and whether the plant returns to it.", "[steady]"),
     key("continuation", Table(CONTINUATION), Without("none"), "Steady states over the values of a key, and the values at which the plant gains or loses its stability.", "[continuation]"),
+    key("tuning", Table(TUNING), Without("none"), "Keys of the plant that `calcine tune` fits to measurements.", "[tuning]"),
 ];
 
 #[rustfmt::skip]
@@ -44,6 +45,7 @@ const METHOD: &[Key] = &[
     key("recycles", Choice(words::<RecycleMethod>), Default("monolithic"), "How recycles are closed: at every evaluation, or by waveform relaxation, window by window.", "\"monolithic\""),
     key("integrator", Choice(words::<PlantIntegrator>), Default("explicit"), "How the unknowns of the units are followed: explicit of fifth order (Dormand and Prince), stabilised of second order for exchange that is fast (Runge–Kutta–Chebyshev), or stiff (Kennedy and Carpenter's ESDIRK4).", "\"explicit\""),
     key("tolerance", Number(D::NONE, Within(0.0, 1.0)), Default("1e-6"), "Error of a step that is allowed, relative to the size of the unknowns.", "1e-6"),
+    key("tears", Texts(0), Without("by the order of the units"), "Streams at which recycles are torn: as many as open them all.", "[\"milled\"]"),
     key("waveform", Table(WAVEFORM), Without("see its keys"), "Windows of waveform relaxation; with `recycles = \"waveform\"`.", "{ longest = \"100 s\" }"),
 ];
 

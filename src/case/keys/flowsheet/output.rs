@@ -46,3 +46,41 @@ pub(super) const CONTINUATION: &[Key] = &[
     key("values", Texts(0), Required, "Values that follow one another, each with its unit; each steady state begins from the one before, the first from the plant's start.", "[\"4\", \"6\", \"8\"]"),
     key("width", Number(D::NONE, Within(0.0, 1.0)), Default("1e-4"), "How closely a limit of stability is found, relative to the value.", "1e-4"),
 ];
+
+#[rustfmt::skip]
+pub(super) const TUNING: &[Key] = &[
+    key("state", Choice(words::<PlantTunedState>), Default("run"), "What is measured: the run at the times of the measurements, or the steady state.", "\"run\""),
+    key("parameters", Tables(TUNED), Required, "The keys that are tuned.", "[[tuning.parameters]]"),
+    key("distributions", Tables(SIEVED), Without("none"), "Measured distributions.", "[[tuning.distributions]]"),
+    key("values", Tables(MEASURED_VALUES), Without("none"), "Other measured quantities.", "[[tuning.values]]"),
+    key("samples", Whole(1, 100_000), Default("12"), "Sets of parameters that are tried first, spread over the bounds.", "12"),
+    key("starts", Whole(1, 1000), Default("2"), "How many of the best are followed.", "2"),
+    key("seed", Whole(0, MOST), Default("1"), "Seed of the sets.", "1"),
+    key("level", Number(D::NONE, Within(0.0, 1.0)), Default("0.95"), "Probability with which an interval holds the true value.", "0.95"),
+];
+
+#[rustfmt::skip]
+const TUNED: &[Key] = &[
+    key("key", Text, Required, "Key of this plant, as `--set` names it.", "\"units.granulator.growth.linear\""),
+    key("low", Text, Required, "Lower bound, in the unit of the key.", "\"0.5 mm\""),
+    key("high", Text, Required, "Upper bound, in the same unit.", "\"4 mm\""),
+    key("logarithmic", Truth, Default("false"), "Whether it is searched by its logarithm: bounds of several powers of ten.", "true"),
+];
+
+#[rustfmt::skip]
+const SIEVED: &[Key] = &[
+    key("stream", Text, OneOf, "The stream that was sieved. Either this or `unit`.", "\"product\""),
+    key("unit", Text, OneOf, "The unit whose content was sieved. Either this or `stream`.", "\"granulator\""),
+    key("file", Path, Required, "CSV file: a head of `time_s` and the apertures, as `time_s, 1 mm, 1.4 mm`; in each row a time in s and the share of the mass that passes each aperture, rising.", "\"sieves.csv\""),
+    key("deviation", Number(D::NONE, Positive), Required, "Standard deviation of a share between two apertures.", "0.005"),
+];
+
+#[rustfmt::skip]
+const MEASURED_VALUES: &[Key] = &[
+    key("stream", Text, OneOf, "The stream. Either this or `unit`.", "\"product\""),
+    key("unit", Text, OneOf, "The unit. Either this or `stream`.", "\"granulator\""),
+    key("field", Choice(words::<PlantField>), Required, "What was measured.", "\"mean_diameter\""),
+    key("of", Text, Without("required with `compound`"), "Compound of the field `compound`.", "\"water\""),
+    key("file", Path, Required, "CSV file: a head of `time_s` and another word; in each row a time in s and the value in SI units.", "\"means.csv\""),
+    key("deviation", Measured, Required, "Standard deviation of a value, in the unit of the field.", "\"5 um\""),
+];

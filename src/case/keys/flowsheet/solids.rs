@@ -66,6 +66,7 @@ pub(super) const INLET: &[Key] = &[
     key("vapours", ByName(D::MASS_FLOW), Without("none"), "Mass flow of each gas and vapour.", "{ air = \"0.5 kg/s\" }"),
     key("temperature", Number(D::TEMPERATURE, Positive), Required, "Temperature.", "\"300 K\""),
     key("factor", Schedule(D::NONE, NotNegative), Default("1"), "Factor of all flows, over time.", "[[\"0 s\", 1], [\"1 h\", 1.1]]"),
+    key("controller", Text, Without("none"), "Controller whose output multiplies the flows, beside the factor.", "\"level\""),
     key("between", Choice(words::<InBetween>), Default("line"), "How the factor runs between its points: in straight lines, or in steps that hold to the next.", "\"step\""),
 ];
 

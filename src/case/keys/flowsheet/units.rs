@@ -19,6 +19,8 @@ pub(super) const UNITS: &[Key] = &[
     key("dryer", Table(DRYER), OneOf, "Dries solids with gas. Ports in: `in`, `gas`; out: `out`, `exhaust`.", "{ moisture = 0.01 }"),
     key("cyclone", Table(CYCLONE), OneOf, "A gas cyclone by Muschelknautz' model. Port in: `in`; out: `solids`, `gas`.", "[units.cyclone]"),
     key("bunker", Table(BUNKER), OneOf, "A well-mixed store. Port in: `in`; out: `out`.", "{ content = { temperature = \"300 K\" } }"),
+    key("bed", Table(BED), OneOf, "A bed that is computed particle by particle as a case of its own, and exchanges with the plant at intervals. It opens a recycle. Port in: `feed`; out: `product`.", "[units.bed]"),
+    key("controller", Table(CONTROLLER), OneOf, "A controller in proportion and integral (PI) with bounds, whose output inlets, splitters and bunkers that name it take. Its integral does not wind up at a bound. No ports.", "[units.controller]"),
     key("delay", Table(DELAY), OneOf, "A conveyor or pipe: what enters leaves after a time, in well-mixed stages. It opens a recycle. Port in: `in`; out: `out`.", "{ time = \"30 s\", stages = 20 }"),
 ];
 
@@ -30,6 +32,22 @@ const MIXER: &[Key] = &[
 #[rustfmt::skip]
 const SPLITTER: &[Key] = &[
     key("shares", Numbers(0), Required, "Share of each outlet; they sum to 1.", "[0.9, 0.1]"),
+    key("controller", Text, Without("none"), "Controller whose output is the share of `out1`; the others divide the rest as their shares are.", "\"purge\""),
+];
+
+#[rustfmt::skip]
+const CONTROLLER: &[Key] = &[
+    key("stream", Text, OneOf, "The stream that is measured. Either this or `unit`.", "\"product\""),
+    key("unit", Text, OneOf, "The unit whose content is measured. Either this or `stream`.", "\"bunker\""),
+    key("field", Choice(words::<PlantField>), Required, "What is measured. Of a unit flows are masses.", "\"mass_flow\""),
+    key("of", Text, Without("required with `compound`"), "Compound of the field `compound`.", "\"water\""),
+    key("set_point", Measured, Required, "What the measurement is to be.", "\"20 kg\""),
+    key("gain", Number(D::NONE, Any), Required, "Change of the output for a change of the measurement by one SI unit; negative where more output lowers the measurement.", "0.02"),
+    key("time", Number(D::TIME, Positive), Without("in proportion alone"), "Time of the integral.", "\"5 min\""),
+    key("filter", Number(D::TIME, Positive), Required, "Time by which the measurement is filtered; the filter begins at the set point.", "\"10 s\""),
+    key("start", Number(D::NONE, Any), Required, "Output at the start, between `low` and `high`.", "1"),
+    key("low", Number(D::NONE, Any), Required, "Lower bound of the output.", "0"),
+    key("high", Number(D::NONE, Any), Required, "Upper bound of the output.", "2"),
 ];
 
 #[rustfmt::skip]
@@ -51,6 +69,7 @@ const GRANULATOR: &[Key] = &[
     key("wear", Number(D::VELOCITY, NotNegative), Default("0 m/s"), "Rate at which every diameter shrinks by attrition; what is worn off is dust.", "\"1e-9 m/s\""),
     key("aggregation", Law(laws::aggregation, &[]), Without("none"), "Aggregation of pairs of particles.", "{ law = \"constant\", rate = \"1e-9 1/s\" }"),
     key("kernel", Table(KERNEL), Without("none"), "Aggregation by a table of rates, measured or computed at another scale.", "{ diameters = [\"1 mm\", \"2 mm\"], rates = [\"1e-9 1/s\", \"2e-9 1/s\", \"2e-9 1/s\", \"4e-9 1/s\"] }"),
+    key("collisions", Table(COLLISIONS), Without("none"), "Aggregation by the collisions that a bed of this plant counts.", "{ bed = \"bed\", efficiency = 1e-3 }"),
     key("breakage", Law(laws::breakage, &[]), Without("none"), "Breakage of particles.", "{ law = \"random-binary\", rate = \"1e6 1/s/m^3\" }"),
 ];
 
@@ -76,6 +95,25 @@ const GROWTH: &[Key] = &[
 const KERNEL: &[Key] = &[
     key("diameters", Texts(0), Required, "Diameters, rising.", "[\"1 mm\", \"2 mm\"]"),
     key("rates", Texts(0), Required, "Rate at which a pair of particles of the bed aggregates, for each diameter each, row by row; bilinear between, constant beyond.", "[\"1e-9 1/s\", \"2e-9 1/s\", \"2e-9 1/s\", \"4e-9 1/s\"]"),
+];
+
+#[rustfmt::skip]
+const COLLISIONS: &[Key] = &[
+    key("bed", Text, Required, "Unit of kind `bed` that has a `kernel`.", "\"bed\""),
+    key("efficiency", Number(D::NONE, Between(0.0, 1.0)), Required, "Share of the collisions after which two particles stay together.", "1e-3"),
+];
+
+#[rustfmt::skip]
+const BED: &[Key] = &[
+    key("case", Path, Required, "Case file of the bed. It has feeds and outlets; its materials are compounds of the plant by their names; what each feed brings, and how warm, comes from the plant.", "\"plant-bed-shaft.toml\""),
+    key("interval", Number(D::TIME, Positive), Required, "Time between two exchanges: what flowed in over one is fed, and what left the bed in it flows out over the next.", "\"1 s\""),
+    key("kernel", Table(BED_KERNEL), Without("none"), "The kernel of collisions that the bed returns, for `granulator.collisions`.", "{ diameters = [\"4 mm\", \"6 mm\"] }"),
+];
+
+#[rustfmt::skip]
+const BED_KERNEL: &[Key] = &[
+    key("diameters", Texts(0), Required, "Diameters, rising, to which particles are counted by their ratio.", "[\"4 mm\", \"6 mm\"]"),
+    key("gap", Number(D::NONE, Within(0.0, 1.0)), Default("0.05"), "Pairs count that are nearer than this share of their mean diameter, and approach: small against the distance between particles, large enough that pairs are found.", "0.05"),
 ];
 
 #[rustfmt::skip]
@@ -112,13 +150,14 @@ const DELAY: &[Key] = &[
 #[rustfmt::skip]
 const BUNKER: &[Key] = &[
     key("content", Table(STORED), Required, "What it holds at the start.", "{ temperature = \"300 K\" }"),
-    key("discharge", Table(DISCHARGE), Without("what enters pushes out as much"), "How it empties: one of `residence`, `adaptive` and `rate`.", "{ residence = \"10 min\" }"),
+    key("discharge", Table(DISCHARGE), Without("what enters pushes out as much"), "How it empties: one of `residence`, `adaptive`, `rate` and `controller`.", "{ residence = \"10 min\" }"),
 ];
 
 #[rustfmt::skip]
 const DISCHARGE: &[Key] = &[
-    key("residence", Number(D::TIME, Positive), OneOf, "The outflow is the mass divided by this time. One of `residence`, `adaptive`, `rate`.", "\"10 min\""),
-    key("adaptive", Number(D::MASS, Positive), OneOf, "Target: the outflow is the inflow times (2 m/(m + target))². One of `residence`, `adaptive`, `rate`.", "\"20 kg\""),
-    key("rate", Schedule(D::MASS_FLOW, NotNegative), OneOf, "Mass flow over time. One of `residence`, `adaptive`, `rate`.", "\"0.1 kg/s\""),
+    key("residence", Number(D::TIME, Positive), OneOf, "The outflow is the mass divided by this time. One of `residence`, `adaptive`, `rate`, `controller`.", "\"10 min\""),
+    key("adaptive", Number(D::MASS, Positive), OneOf, "Target: the outflow is the inflow times (2 m/(m + target))². One of `residence`, `adaptive`, `rate`, `controller`.", "\"20 kg\""),
+    key("rate", Schedule(D::MASS_FLOW, NotNegative), OneOf, "Mass flow over time. One of `residence`, `adaptive`, `rate`, `controller`.", "\"0.1 kg/s\""),
+    key("controller", Text, OneOf, "Controller whose output is the mass flow in kg/s. One of `residence`, `adaptive`, `rate`, `controller`.", "\"level\""),
     key("between", Choice(words::<InBetween>), Default("line"), "How the rate runs between its points: in straight lines, or in steps that hold to the next.", "\"step\""),
 ];
