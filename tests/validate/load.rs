@@ -41,6 +41,7 @@ pub fn run() {
     println!(
         "  | pairing | process time | samples | MB, second fifth | MB, last fifth | handles | threads |"
     );
+    let mut missed = Vec::new();
     for (pairing, words, end) in [
         ("native+native", &[][..], "24 h"),
         (
@@ -79,14 +80,10 @@ pub fn run() {
             early.threads,
             late.threads
         );
-        assert!(
-            late.memory <= GROWTH * early.memory,
-            "{pairing}: {early:?} {late:?}"
-        );
-        assert!(
-            late.handles <= early.handles && late.threads <= early.threads,
-            "{pairing}: {early:?} {late:?}"
-        );
+        let grew = late.memory > GROWTH * early.memory;
+        if grew || late.handles > early.handles || late.threads > early.threads {
+            missed.push(format!("{pairing}: {early:?} {late:?}"));
+        }
         let files: Vec<_> = fs::read_dir(&temporary).unwrap().collect();
         assert!(files.is_empty(), "{pairing}: left {files:?}");
         // Other runs on this machine come and go.
@@ -99,6 +96,7 @@ pub fn run() {
         more.retain(|name| !before.contains(name));
         assert!(more.is_empty(), "{pairing}: left {more:?}");
     }
+    assert!(missed.is_empty(), "{missed:?}");
 }
 
 fn most(samples: &[Held]) -> Held {
