@@ -47,7 +47,7 @@ const REFUSED: [(&[&str], &str, &str); 5] = [
         "place them by `particles.place`, and read them by `read_data ${calcine_data}`",
     ),
     (
-        &["if", "partition", "python", "shell"],
+        &["if", "partition"],
         "commands within others cannot be looked at",
         "write the commands that hold, each in a line of its own",
     ),
