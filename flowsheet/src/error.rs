@@ -181,6 +181,11 @@ pub enum PlantError {
         /// Iterations done.
         iterations: usize,
     },
+    /// Eigenvalues that were not found.
+    #[error(
+        "the modes of the steady state were not found: the QR algorithm did not converge; run the plant without `steady` to see whether it comes to rest"
+    )]
+    NoModes,
     /// A value of a key for which there is no plant.
     #[error("no plant has the value {value}: {cause}")]
     NoPlant {

@@ -1,6 +1,7 @@
 //! Steady states and their stability.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::linalg::Schur;
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::flows::{FlowWorkspace, Moment};
 use super::topology::Plant;
@@ -141,6 +142,9 @@ impl Plant {
             time,
             end: f64::INFINITY,
         };
+        if self.unknowns == 0 {
+            return Ok(Stability { modes: Vec::new() });
+        }
         let mut work = at.flows.clone();
         let mut rates = vec![0.0; self.unknowns + self.totals()];
         self.rates(moment, &at.unknowns, &mut work, &mut rates)?;
@@ -162,7 +166,9 @@ impl Plant {
                 matrix[(row, column)] *= scales[column] / scales[row];
             }
         }
-        let eigenvalues = matrix.complex_eigenvalues();
+        let Some(eigenvalues) = eigenvalues(&matrix) else {
+            return Err(PlantError::NoModes);
+        };
         let mut modes: Vec<Mode> = eigenvalues
             .iter()
             .map(|value| Mode {
@@ -183,5 +189,56 @@ impl Plant {
                 .then(b.frequency.total_cmp(&a.frequency))
         });
         Ok(Stability { modes })
+    }
+}
+
+/// Eigenvalues of a matrix; `None` where the QR algorithm does not converge.
+///
+/// Between diagonal elements that are zero, the algorithm never takes an element beside them for nothing: it is repeated with all eigenvalues
+/// moved away from zero by the matrix's norm, which costs them round-off of that norm.
+fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    const SWEEPS: usize = 100;
+    let size = matrix.nrows();
+    [0.0, matrix.norm(), -2.0 * matrix.norm()]
+        .into_iter()
+        .find_map(|shift| {
+            let mut moved = matrix.clone();
+            for k in 0..size {
+                moved[(k, k)] += shift;
+            }
+            let schur = Schur::try_new(moved, f64::EPSILON, SWEEPS * size)?;
+            let found = schur.complex_eigenvalues();
+            Some(found.iter().map(|value| value - shift).collect())
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hold-up m with a PI controller of its discharge, filter 5 s, gain −0.02 1/s, time 100 s: x' = (m − x)/5, I' = 2e-4 (x − w),
+    /// m' = −0.02 (x − w) − I; beside what never changes.
+    #[test]
+    fn the_modes_of_a_controlled_hold_up_are_found_beside_zeros() {
+        let rows = [
+            [0.0, -0.02, -1.0, 0.0],
+            [0.2, -0.2, 0.0, 0.0],
+            [0.0, 2e-4, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0],
+        ];
+        let matrix = DMatrix::from_row_slice(4, 4, &rows.concat());
+        let found = eigenvalues(&matrix).unwrap();
+        // Of λ (λ³ + 0.2 λ² + 0.004 λ + 4e-5).
+        for value in found {
+            let cubic = ((value + 0.2) * value + 0.004) * value + 4e-5;
+            assert!((cubic * value).norm() < 1e-14, "{value}");
+        }
+        let nothing = DMatrix::<f64>::zeros(3, 3);
+        assert!(
+            eigenvalues(&nothing)
+                .unwrap()
+                .iter()
+                .all(|value| value.norm() == 0.0)
+        );
     }
 }
