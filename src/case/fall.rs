@@ -34,30 +34,33 @@ pub(super) fn out_of_the_mesh(
     }
     let free = |row: &usize| !contacts.held[setup.population[*row] as usize];
     let rows: Vec<usize> = (0..setup.id.len()).filter(free).collect();
+    let step = rows.len().div_ceil(LOOKED_AT).max(1);
+    let open = |row: &usize| {
+        let from = setup.position[*row];
+        !contacts
+            .walls
+            .iter()
+            .any(|wall| stops(&wall.shape, from, down))
+    };
+    let mut unkept = rows.into_iter().step_by(step).filter(open).peekable();
+    unkept.peek()?;
     let locator = Locator::new(mesh);
     let [low, high] = mesh.bounds();
     let across = (high - low).norm();
     let end = span::motion_time(&case.time, [0.0, case.time.end.seconds()]);
-    let step = rows.len().div_ceil(LOOKED_AT).max(1);
-    let row = rows.into_iter().step_by(step).find(|&row| {
+    let row = unkept.find(|&row| {
         let centre = setup.position[row];
         let along = |share: f64| centre + share * across * down;
         let places = (0..=PLACES).map(|k| along(k as f64 / PLACES as f64));
-        let within = places.take_while(|place| locator.cell_at(*place).is_some());
         let mut depth = 0;
-        for place in within {
+        for place in places.take_while(|place| locator.cell_at(*place).is_some()) {
             if case.outlets.iter().any(|outlet| outlet.zone.holds(place)) {
                 return false;
             }
             depth += 1;
         }
         let fall = f64::from(depth) / PLACES as f64 * across;
-        let time = (2.0 * fall / gravity).sqrt();
-        time < end
-            && !contacts
-                .walls
-                .iter()
-                .any(|wall| stops(&wall.shape, centre, down))
+        (2.0 * fall / gravity).sqrt() < end
     })?;
     let [x, y, z] = [0, 1, 2].map(|axis| shown(setup.position[row][axis]));
     Some(format!(

@@ -31,9 +31,7 @@ pub enum HostError {
     },
     /// Particles that went away.
     #[error(
-        "{found} of {expected} particles are left; they left the box or their speed exploded{which}; particles leave where no wall \
-         closes the gas mesh, through a hole in a wall, or because the step is too long or the contacts are too soft for their \
-         speed: see walls, step and overlap in `calcine check`"
+        "{found} of {expected} particles are left; they left the box or their speed exploded{which}"
     )]
     Lost {
         /// Particles now.

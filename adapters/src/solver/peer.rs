@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::motion::LOST_REMEDY;
 use calcine_coupler::supervisor::{Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::{Link, MessageKind, SolverFailure, WireError};
@@ -106,7 +107,14 @@ impl Peer {
         let who = self.who(rank);
         let log = log_end(&self.log);
         let mut part = match error {
-            WireError::Failed { kind, text } => PartError::new(who, reported(kind), text),
+            WireError::Failed { kind, text } => {
+                let kind = reported(kind);
+                let text = match kind {
+                    FailureKind::LostParticles => format!("{text}; {LOST_REMEDY}"),
+                    _ => text,
+                };
+                PartError::new(who, kind, text)
+            }
             WireError::Mismatch { .. } => {
                 PartError::new(who, FailureKind::NotStarted, error.to_string())
             }

@@ -77,19 +77,9 @@ impl CoupledRun {
             return Ok(());
         }
         let fields = self.parts.particles.fields();
-        let ids = fields.id;
         let held = |&row: &usize| fields.weight_of(row) * self.interior.mass[row];
         let left: f64 = rows.iter().map(held).sum();
-        let change = ParticleChanges {
-            remove: rows.iter().map(|&row| ids[row]).collect(),
-            ..ParticleChanges::default()
-        };
-        let step = PopulationStep {
-            change,
-            rows,
-            temperature: Vec::new(),
-        };
-        let mut moved = self.exchange_particles(supervisor, step)?;
+        let mut moved = self.take_out(supervisor, rows)?;
         // The solver of the motion has the masses from before the window.
         moved.gone.mass = left;
         self.ledger.used_up.add_all(&moved.gone);
@@ -122,8 +112,16 @@ impl CoupledRun {
             },
         });
         self.findings.sort_by_key(|finding| finding.kind);
+        let moved = self.take_out(supervisor, rows)?;
+        self.ledger.lost.add_all(&moved.gone);
+        Ok(())
+    }
+
+    /// Takes particles out of every part; what they carried.
+    fn take_out(&mut self, supervisor: &Supervisor, rows: Vec<usize>) -> Result<Moved, RunError> {
+        let ids = self.parts.particles.fields().id;
         let change = ParticleChanges {
-            remove: rows.iter().map(|&row| fields.id[row]).collect(),
+            remove: rows.iter().map(|&row| ids[row]).collect(),
             ..ParticleChanges::default()
         };
         let step = PopulationStep {
@@ -131,9 +129,7 @@ impl CoupledRun {
             rows,
             temperature: Vec::new(),
         };
-        let moved = self.exchange_particles(supervisor, step)?;
-        self.ledger.lost.add_all(&moved.gone);
-        Ok(())
+        self.exchange_particles(supervisor, step)
     }
 
     /// The error of a particle that stands in no cell.

@@ -303,11 +303,12 @@ mod tests {
         for mesh in shapes() {
             let weights = LinearWeights::new(&mesh);
             let [low, high] = mesh.bounds();
+            let mapper = Mapper::new(&mesh);
+            let mut seen = 0;
             for k in 1..40 {
                 let share = |factor: f64| (f64::from(k) * factor).fract();
                 let way = Vec3::new(share(0.618), share(0.414), share(0.732));
                 let at = low + (high - low).component_mul(&way);
-                let mapper = Mapper::new(&mesh);
                 let Ok(found) = mapper.fill(Method::Linear, &[at], &[1e-3]) else {
                     continue;
                 };
@@ -321,7 +322,9 @@ mod tests {
                     cells[cell] -= share;
                 }
                 assert!(cells.iter().all(|left| left.abs() < 1e-13), "{at}");
+                seen += 1;
             }
+            assert!(seen > 30, "{seen} of 39 points lie in the mesh");
         }
     }
 
