@@ -8,6 +8,9 @@ use std::process::{Command, Output};
 use calcine::case::plant::read_plant;
 use calcine::plant::PlantSummary;
 
+use crate::support::program;
+use crate::support::stopped::{Stopped, stop};
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -137,6 +140,37 @@ fn the_shipped_plants_run_and_close() {
     }
 }
 
+/// A run that ends soon after its first checkpoint, by SIGTERM and by a kill, and goes on: what a whole run left.
+fn goes_on_to_the_same_bits(case: &Path, settings: &[&str], whole: &Path) {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["stopped", "killed"] {
+        let out = folder.path().join(name);
+        let mut command = program::command(case, &out, &[], settings);
+        let saved = out.join("checkpoint/plant.json");
+        if name == "stopped" {
+            let ended = stop(command, |_| saved.exists());
+            assert_eq!(ended, Stopped::Checkpointed);
+        } else {
+            let mut child = command.stdout(std::process::Stdio::null()).spawn().unwrap();
+            while !saved.exists() && child.try_wait().unwrap().is_none() {
+                std::thread::sleep(std::time::Duration::from_millis(2));
+            }
+            let _ = child.kill();
+            child.wait().unwrap();
+        }
+        let output = calcine(&["run", "--resume", out.to_str().unwrap(), "--quiet"]);
+        let code = output.status.code();
+        assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
+        for file in ["series.csv", "distributions.csv", "streams.csv"] {
+            let read = |folder: &Path| fs::read(folder.join(file)).unwrap();
+            assert!(read(&out) == read(whole), "{name}: {file}");
+        }
+        let [one, other] = [&out, whole].map(|folder| PlantSummary::read(folder).unwrap());
+        assert_eq!(one.ledger, other.ledger);
+        assert_eq!(one.quantities, other.quantities);
+    }
+}
+
 #[test]
 fn a_run_that_was_stopped_or_killed_goes_on_to_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
@@ -146,37 +180,9 @@ fn a_run_that_was_stopped_or_killed_goes_on_to_the_same_bits() {
         "sizes.uniform.classes=100",
         "time.checkpoint={ every = \"20 s\" }",
     ];
-    let [whole, stopped, killed] =
-        ["whole", "stopped", "killed"].map(|name| folder.path().join(name));
+    let whole = folder.path().join("whole");
     run(&case, &whole, &settings, &[]);
-    let output = run(&case, &stopped, &settings, &["--stop-after", "0.02"]);
-    assert_eq!(output.status.code(), Some(75), "{}", said(&output));
-    let mut child = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    child.args(["run", case.to_str().unwrap(), "--quiet", "--out"]);
-    child.arg(&killed);
-    for setting in settings {
-        child.args(["--set", setting]);
-    }
-    let mut child = child.stdout(std::process::Stdio::null()).spawn().unwrap();
-    // Killed as soon as there is a checkpoint; where the run was faster, it is complete.
-    let saved = killed.join("checkpoint/plant.json");
-    while !saved.exists() && child.try_wait().unwrap().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    let _ = child.kill();
-    child.wait().unwrap();
-    for out in [&stopped, &killed] {
-        let output = calcine(&["run", "--resume", out.to_str().unwrap(), "--quiet"]);
-        let code = output.status.code();
-        assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
-        for file in ["series.csv", "distributions.csv", "streams.csv"] {
-            let read = |folder: &Path| fs::read(folder.join(file)).unwrap();
-            assert!(read(out) == read(&whole), "{}: {file}", out.display());
-        }
-        let [one, other] = [out, &whole].map(|folder| PlantSummary::read(folder).unwrap());
-        assert_eq!(one.ledger, other.ledger);
-        assert_eq!(one.quantities, other.quantities);
-    }
+    goes_on_to_the_same_bits(&case, &settings, &whole);
 }
 
 /// Compounds and enthalpy of the shipped shaft close in its plant's ledger, where the heat is what the bed's gas gave and
@@ -190,8 +196,7 @@ fn a_bed_in_a_plant_closes_and_is_resumed_to_the_same_bits() {
         "time.checkpoint={ every = \"4 s\" }",
         "output.distributions=8 s",
     ];
-    let [whole, stopped, killed] =
-        ["whole", "stopped", "killed"].map(|name| folder.path().join(name));
+    let whole = folder.path().join("whole");
     let output = run(&case, &whole, &settings, &[]);
     let code = output.status.code();
     assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
@@ -210,32 +215,7 @@ fn a_bed_in_a_plant_closes_and_is_resumed_to_the_same_bits() {
     let page = fs::read_to_string(whole.join("report.html")).unwrap();
     assert!(page.contains("aria-label=\"Flowsheet\""));
     assert!(whole.join("beds/shaft/summary.json").exists());
-    let output = run(&case, &stopped, &settings, &["--stop-after", "0.7"]);
-    assert_eq!(output.status.code(), Some(75), "{}", said(&output));
-    let mut child = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    child.args(["run", case.to_str().unwrap(), "--quiet", "--out"]);
-    child.arg(&killed);
-    for setting in settings {
-        child.args(["--set", setting]);
-    }
-    let mut child = child.stdout(std::process::Stdio::null()).spawn().unwrap();
-    let saved = killed.join("checkpoint/plant.json");
-    while !saved.exists() && child.try_wait().unwrap().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    let _ = child.kill();
-    child.wait().unwrap();
-    for out in [&stopped, &killed] {
-        let output = calcine(&["run", "--resume", out.to_str().unwrap(), "--quiet"]);
-        let code = output.status.code();
-        assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
-        for file in ["series.csv", "distributions.csv", "streams.csv"] {
-            let read = |folder: &Path| fs::read(folder.join(file)).unwrap();
-            assert!(read(out) == read(&whole), "{}: {file}", out.display());
-        }
-        let other = PlantSummary::read(out).unwrap();
-        assert_eq!(other.ledger, summary.ledger);
-    }
+    goes_on_to_the_same_bits(&case, &settings, &whole);
     let refused = run(
         &case,
         &folder.path().join("from"),

@@ -175,7 +175,7 @@ pub fn pairs_across(
 }
 
 /// Pairs of spheres whose surfaces are nearer than `gap` in m, in the order of their indices.
-fn near(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<[u32; 2]> {
+pub fn near(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<[u32; 2]> {
     let Some(first) = centres.first() else {
         return Vec::new();
     };

@@ -269,7 +269,9 @@ impl PlantBed {
                 .map(|row| state.particles.weight_of(row) * state.particle_heat[row]);
             heat += span * (into.sum::<f64>() + state.reservoir_heat.iter().sum::<f64>());
             let moved = self.simulation.motion_time() - motion;
-            self.collisions.add(&state.particles, span, span / moved);
+            let periodicity = state.mesh.periodicity();
+            self.collisions
+                .add(&state.particles, periodicity, span, span / moved);
             let mut old = std::mem::take(&mut self.known);
             self.look();
             let new: Vec<u64> = state_ids(&self.simulation);

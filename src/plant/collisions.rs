@@ -1,8 +1,8 @@
 //! Collisions of the particles of a bed, counted by their approach.
 
-use std::collections::HashMap;
-
+use calcine_coupler::contacts::{near, pairs_across};
 use calcine_coupler::part::ParticleFields;
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 
 /// Collisions of particles by pairs of diameters, from what is seen at many moments (docs/theory.md, FLS-8).
@@ -49,7 +49,13 @@ impl CollisionCount {
     }
 
     /// Adds what is seen over a span of process time in s, with an acceleration factor by which the motion is faster.
-    pub fn add(&mut self, particles: &ParticleFields<'_>, span: f64, acceleration: f64) {
+    pub fn add(
+        &mut self,
+        particles: &ParticleFields<'_>,
+        periodicity: &Periodicity,
+        span: f64,
+        acceleration: f64,
+    ) {
         let count = self.diameters.len();
         if count == 0 {
             return;
@@ -68,21 +74,26 @@ impl CollisionCount {
         for (one, other) in (0..count).flat_map(|one| (0..count).map(move |other| (one, other))) {
             self.pairs[one * count + other] += span * numbers[one] * numbers[other];
         }
-        let gap = self.gap;
-        let collisions = &mut self.collisions;
-        each_near_pair(particles, gap, |a, b, apart, reach| {
-            let way = particles.position[b] - particles.position[a];
+        let (radii, centres) = (particles.radius, particles.position);
+        let widest = self.gap * 2.0 * radii.iter().copied().fold(0.0, f64::max);
+        let within = near(radii, centres, widest).into_iter();
+        let within = within.map(|pair| (pair, Vec3::zeros()));
+        for ([a, b], image) in within.chain(pairs_across(periodicity, radii, centres, widest)) {
+            let (a, b) = (a as usize, b as usize);
+            let touch = radii[a] + radii[b];
+            let way = centres[b] + image - centres[a];
+            let (apart, reach) = (way.norm() - touch, self.gap * touch);
             let speed = (particles.velocity[b] - particles.velocity[a]).dot(&way) / way.norm();
-            if speed >= 0.0 || apart <= 0.0 {
-                return;
+            if speed >= 0.0 || apart <= 0.0 || apart >= reach {
+                continue;
             }
             // Weighted particles meet as often as the real ones that they stand for.
             let weight = particles.weight_of(a) * particles.weight_of(b);
             let rate = -speed / reach / acceleration * weight;
             let (one, other) = (places[a], places[b]);
-            collisions[one * count + other] += span * rate;
-            collisions[other * count + one] += span * rate;
-        });
+            self.collisions[one * count + other] += span * rate;
+            self.collisions[other * count + one] += span * rate;
+        }
     }
 
     /// K = β M in kg/s of each pair, row by row, over all that was added, where ½ Σ Σ β N N' pairs collide in a second; zero
@@ -101,42 +112,6 @@ impl CollisionCount {
         let kernel = kernel.collect();
         *self = Self::new(&std::mem::take(&mut self.diameters), self.gap);
         kernel
-    }
-}
-
-/// Visits each pair whose gap is below a share of its mean diameter once: rows, gap, and the width of the shell, in m.
-fn each_near_pair(
-    particles: &ParticleFields<'_>,
-    gap: f64,
-    mut visit: impl FnMut(usize, usize, f64, f64),
-) {
-    let largest = particles.radius.iter().copied().fold(0.0, f64::max);
-    if largest == 0.0 {
-        return;
-    }
-    let edge = 2.0 * largest * (1.0 + gap);
-    let cell = |at: &Vec3| [0, 1, 2].map(|axis| (at[axis] / edge).floor() as i64);
-    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-    for (row, at) in particles.position.iter().enumerate() {
-        cells.entry(cell(at)).or_default().push(row);
-    }
-    // Rows in their order, so that sums have the same bits each time.
-    for (row, at) in particles.position.iter().enumerate() {
-        let [x, y, z] = cell(at);
-        let mut near: Vec<usize> = Vec::new();
-        for (dx, dy, dz) in (0..27).map(|k| (k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1)) {
-            let there = cells.get(&[x + dx, y + dy, z + dz]);
-            near.extend(there.into_iter().flatten().filter(|other| **other > row));
-        }
-        near.sort_unstable();
-        for other in near {
-            let touch = particles.radius[row] + particles.radius[other];
-            let apart = (particles.position[other] - at).norm() - touch;
-            let reach = gap * touch;
-            if apart < reach {
-                visit(row, other, apart, reach);
-            }
-        }
     }
 }
 
@@ -189,7 +164,7 @@ mod tests {
                 one.radius.push(radii[kind]);
                 one.mass.push(mass[kind]);
             }
-            counted.add(&one.fields(), 0.25, acceleration);
+            counted.add(&one.fields(), &Periodicity::default(), 0.25, acceleration);
         }
         let kernel = counted.take();
         let held = count as f64 * (mass[0] + mass[1]);

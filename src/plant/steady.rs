@@ -51,22 +51,28 @@ fn distance(plant: &Plant, one: &[f64], other: &[f64]) -> f64 {
     (0..plant.units().len()).map(of).fold(0.0, f64::max)
 }
 
+/// The plant of a case with other values of some keys, one of which an error names.
+pub(super) fn plant_with(
+    case: &PlantCase,
+    settings: &[String],
+    value: f64,
+) -> Result<Plant, PlantError> {
+    let read = parse_plant(&case.path, &case.effective, settings);
+    read.map(|case| case.plant).map_err(|wrong| {
+        let first = wrong.problems().first();
+        PlantError::NoPlant {
+            value,
+            cause: first.map(|one| one.message.clone()).unwrap_or_default(),
+        }
+    })
+}
+
 /// Steady states over the values of a key, and the limits of stability between them.
 pub(super) fn continuation(
     case: &PlantCase,
     spec: &ContinuationSpec,
 ) -> Result<PlantContinuationSummary, PlantError> {
-    let make = |value: f64| {
-        let read = parse_plant(&case.path, &case.effective, &spec.settings(value));
-        read.map(|case| case.plant).map_err(|wrong| {
-            // All values were read before the run.
-            let first = wrong.problems().first();
-            PlantError::NoPlant {
-                value,
-                cause: first.map(|one| one.message.clone()).unwrap_or_default(),
-            }
-        })
-    };
+    let make = |value: f64| plant_with(case, &spec.settings(value), value);
     let states = Continuation::new(make, case.end);
     let points = states.follow(&spec.values)?;
     let limits = states.limits(&points, spec.width)?;

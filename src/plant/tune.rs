@@ -15,9 +15,10 @@ use calcine_tuning::search::{StartSettings, fit_globally};
 use calcine_tuning::{ParameterSpace, TunedParameter, TuningError, TuningProblem};
 
 use super::measure::field;
+use super::steady::plant_with;
 use super::summary::{PlantSensitivity, PlantTunedParameter, PlantTuningSummary};
 use crate::case::plant::{
-    OverTime, PlantCase, PlantField, PlantMeasure, PlantPlace, PlantTuningSpec, parse_plant,
+    OverTime, PlantCase, PlantField, PlantMeasure, PlantPlace, PlantTuningSpec,
 };
 use crate::results::sheet::{line, number};
 use crate::results::{ResultsError, files};
@@ -111,14 +112,11 @@ impl<'a> PlantProblem<'a> {
     fn plant(&self, values: &[f64]) -> Result<Plant, PlantError> {
         let keys = self.spec.parameters.iter().zip(values);
         let settings: Vec<String> = keys.map(|(key, value)| key.setting(*value)).collect();
-        let read = parse_plant(&self.case.path, &self.case.effective, &settings);
-        read.map(|case| case.plant).map_err(|wrong| {
-            let first = wrong.problems().first();
-            PlantError::NoPlant {
-                value: values.first().copied().unwrap_or(f64::NAN),
-                cause: first.map_or(String::new(), |one| one.message.clone()),
-            }
-        })
+        plant_with(
+            self.case,
+            &settings,
+            values.first().copied().unwrap_or(f64::NAN),
+        )
     }
 
     fn now(&self, time: f64, of: f64) -> bool {
