@@ -1,0 +1,26 @@
+//! Contacts that are pressed in farther than their laws hold.
+
+use calcine_coupler::excursion::Excursion;
+use calcine_coupler::part::DEEP_CONTACT;
+
+use super::sphere::Spheres;
+
+/// How far in m an overlap is beyond the deepest that holds, for two spheres by their radii.
+#[inline(always)]
+pub fn beyond(overlap: f64, radii: [f64; 2]) -> f64 {
+    overlap - DEEP_CONTACT * radii[0].min(radii[1])
+}
+
+/// Notes an overlap in m that is beyond the deepest that holds, at the row of the smaller of two spheres.
+#[cold]
+pub fn note(deep: &mut Excursion, spheres: &Spheres, pair: [usize; 2], overlap: f64) {
+    let [i, j] = pair;
+    let smaller = if spheres.place[j].radius < spheres.place[i].radius {
+        j
+    } else {
+        i
+    };
+    let share = overlap / spheres.place[smaller].radius;
+    let row = spheres.row_of(smaller) as usize;
+    deep.look(row, share, (0.0, DEEP_CONTACT));
+}
