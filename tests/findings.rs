@@ -152,7 +152,7 @@ fn beads_too_soft(particles: &str) -> WarningSummary {
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{told}");
     let warning = shown(&output, &out, "deep_contacts");
-    assert_eq!(warning.limit, Some(0.1));
+    assert_eq!(warning.limit, Some(0.2));
     assert!(matches!(warning.place, WarningPlace::Particle(_)));
     warning
 }

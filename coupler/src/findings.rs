@@ -133,8 +133,8 @@ impl FindingKind {
             ],
             Self::DeepContacts => [
                 "deep_contacts",
-                "particles pressed into walls or each other farther than contacts hold, and soon through them: raise `young` of \
-                 their material (spring stiffnesses where the case states them), see overlap and step in `calcine check`; overlap \
+                "particles pressed into walls or each other farther than contact laws hold: raise `young` of their material (spring \
+                 stiffnesses where the case states them) before they go through, see overlap and step in `calcine check`; overlap \
                  over the smaller radius",
                 "1",
             ],
