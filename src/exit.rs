@@ -24,6 +24,9 @@ pub const WARNINGS: u8 = 6;
 /// Interrupted, with a checkpoint to go on from.
 pub const CHECKPOINTED: u8 = 75;
 
+/// Interrupted a second time before the window was done: ended at once; the last checkpoint, where there is one, stays.
+pub const INTERRUPTED: u8 = 130;
+
 /// The exit code of a complete run.
 pub fn complete(summary: &Summary, strict: bool) -> u8 {
     let mut quantities = summary.quantities.values();
@@ -46,7 +49,7 @@ pub fn of(error: &RunError) -> u8 {
             | FailureKind::LostParticles => DIVERGED,
             FailureKind::Io | FailureKind::OutOfMemory => OTHER,
             FailureKind::Refused => CASE,
-            FailureKind::Interrupted => CHECKPOINTED,
+            FailureKind::Interrupted => INTERRUPTED,
             FailureKind::Died
             | FailureKind::Silent
             | FailureKind::NotStarted

@@ -9,6 +9,7 @@ use crate::assembly::{
 };
 use crate::case::model::Case;
 use crate::case::packed::BedPacking;
+use crate::case::temperature_cautions::of_files;
 use crate::case::warnings::warnings;
 use crate::case::{CaseErrors, located, read_with, settle};
 use crate::laws::LawCatalogue;
@@ -66,6 +67,9 @@ impl ValidCase {
         let packing = packing.map_err(|error| placed(&case, error))?;
         results::fits(&case, &prepared.mesh)?;
         case.warnings = warnings(&case, &prepared.mesh, &prepared.particles, &packing);
+        let population = &prepared.particles.population;
+        case.warnings
+            .extend(of_files(&case, population, &prepared.temperature));
         Ok(Self {
             case,
             prepared,

@@ -40,7 +40,10 @@ fn a_wall_and_a_bed_that_changed_are_named_where_a_run_is_resumed() {
     };
     bed("0.006");
     let told = refused();
-    assert!(told.contains("`bead.csv` holds something else"), "{told}");
+    assert!(
+        told.contains("`particles.bead.place.file` holds something else"),
+        "{told}"
+    );
     assert!(!told.contains("walls."), "{told}");
     bed("0.005");
     fs::write(

@@ -46,13 +46,15 @@ pub enum FindingKind {
     NetworkIterations,
     /// The linear solver of the heat between particles ended at its limit.
     NetworkSolver,
+    /// A run whose balance of mass or energy is open at its end.
+    OpenBalance,
     /// View factors of particles that do not add up to their surface.
     ViewFactors,
 }
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::GasTemperature,
         Self::MassFraction,
         Self::MachNumber,
@@ -72,6 +74,7 @@ impl FindingKind {
         Self::ExchangeAttempts,
         Self::NetworkIterations,
         Self::NetworkSolver,
+        Self::OpenBalance,
         Self::ViewFactors,
     ];
 
@@ -171,6 +174,12 @@ impl FindingKind {
             Self::NetworkSolver => [
                 "network_solver",
                 "the linear solver of the heat between particles ended at its limit; relative residual",
+                "1",
+            ],
+            Self::OpenBalance => [
+                "open_balance",
+                "the balance of mass or energy is open at the end of the run (its ledger): the solver of the gas stopped far from its \
+                 solution; tighten its tolerances and loops; relative error",
                 "1",
             ],
             Self::ViewFactors => [

@@ -373,9 +373,11 @@ mod tests {
             let path = template.path().join(name);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             let text = match name {
-                "constant/turbulenceProperties" => "simulationType laminar;\n",
-                "system/fvSchemes" => "gradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n",
-                _ => "",
+                "constant/turbulenceProperties" => "FoamFile {}\nsimulationType laminar;\n",
+                "system/fvSchemes" => {
+                    "FoamFile {}\ngradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n"
+                }
+                _ => "FoamFile {}\n",
             };
             std::fs::write(path, text).unwrap();
         }

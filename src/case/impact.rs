@@ -1,6 +1,7 @@
 //! How deep the hardest impact presses the particles of a case.
 
 use calcine_coupler::motion::{ContactForce, Elastic};
+use calcine_coupler::part::DEEP_CONTACT;
 use calcine_coupler::physics::contact::time_step;
 use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::ParticleSetup;
@@ -80,8 +81,9 @@ impl Impacts {
         let [free, lying] = [self.free, self.lying].map(|share| 100.0 * share);
         format!(
             "    largest overlap at {:.3} m/s: {free:.1} % of the smaller radius, smallest against largest particle; {lying:.1} % where \
-             the smallest lies on a wall\n",
-            self.speed
+             the smallest lies on a wall; a run tells of more than {:.0} %\n",
+            self.speed,
+            100.0 * DEEP_CONTACT
         )
     }
 

@@ -47,7 +47,7 @@ mod stl;
 mod surface_holes;
 mod syntax;
 mod table;
-mod temperature_cautions;
+pub mod temperature_cautions;
 mod time_cautions;
 mod tolerance;
 mod touching;

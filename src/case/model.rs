@@ -49,8 +49,7 @@ pub struct Case {
     pub hash: String,
     /// Effective TOML text, `--set` applied, as written next to the results.
     pub effective: String,
-    /// SHA-256 (hex) of what is in each file that the case reads, by its path as the case has it; of the triangles of a wall by
-    /// the wall's key.
+    /// SHA-256 (hex) of what is in each file that the case reads, by the key that names it.
     pub files: BTreeMap<String, String>,
     /// What `--set` changed: key, new and old value.
     pub changes: Vec<String>,

@@ -2,8 +2,12 @@
 
 use calcine_coupler::contacts::touching;
 use calcine_coupler::interior::NeighbourPair;
+use calcine_coupler::part::DEEP_CONTACT;
 use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::setup::ParticleSetup;
+
+use super::model::{Case, MotionSpec};
+use super::units::short3;
 
 /// Two particles that overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +56,38 @@ pub(super) fn first(
         distance: radii - found.overlap,
         radii,
     })
+}
+
+/// A warning where particles that move are pressed together farther than contact laws hold before anything runs.
+pub(super) fn deepest(
+    case: &Case,
+    setup: &ParticleSetup,
+    periodicity: &Periodicity,
+) -> Option<String> {
+    let free: Vec<bool> = case
+        .particles
+        .iter()
+        .map(|one| one.motion == MotionSpec::Free)
+        .collect();
+    let moves = |row: usize| free.get(setup.population[row] as usize) == Some(&true);
+    let motion = case.motion.as_ref();
+    if !free.contains(&true) || motion.is_none_or(|motion| motion.parcels.is_some()) {
+        return None;
+    }
+    let depth = |touch: &NeighbourPair| touch.overlap / touch.radius[0].min(touch.radius[1]);
+    let touches = touching(periodicity, &setup.radius, &setup.position, 0.0);
+    let deep = touches
+        .iter()
+        .filter(|touch| touch.particles.iter().any(|&row| moves(row)))
+        .filter(|touch| depth(touch) > DEEP_CONTACT);
+    let worst = deep.clone().max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
+    let [a, b] = worst.particles.map(|row| setup.id[row]);
+    Some(format!(
+        "{} pairs of particles overlap by more than {DEEP_CONTACT} of the smaller radius at the start, particles {a} and {b} by {}: contacts \
+         drive them apart at once; place them farther apart, or check the unit of their diameters",
+        deep.count(),
+        short3(depth(worst))
+    ))
 }
 
 #[cfg(test)]

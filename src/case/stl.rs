@@ -42,6 +42,12 @@ pub enum StlError {
         /// Whole ones that it holds.
         there: usize,
     },
+    /// A body that does not end.
+    #[error("has no `endsolid` to the `solid` of line {line}: it was cut short")]
+    Unended {
+        /// The line that opens it, from 1.
+        line: usize,
+    },
     /// A line that is not as it should be.
     #[error("has in line {line} no three finite coordinates")]
     Line {
@@ -132,8 +138,21 @@ fn binary(bytes: &[u8]) -> Result<Option<Vec<[Vec3; 3]>>, StlError> {
 
 fn ascii(text: &str) -> Result<Vec<[Vec3; 3]>, StlError> {
     let mut corners = Vec::new();
+    // Bodies that are open, by the line that opens them.
+    let mut open = Vec::new();
     for (index, line) in text.lines().enumerate() {
-        let Some(rest) = line.trim_start().strip_prefix("vertex") else {
+        let line = line.trim_start();
+        let begins = |word: &str| {
+            let head = line.get(..word.len());
+            head.filter(|head| head.eq_ignore_ascii_case(word))
+                .map(|head| &line[head.len()..])
+        };
+        if begins("solid").is_some() {
+            open.push(index + 1);
+        } else if begins("endsolid").is_some() {
+            open.pop();
+        }
+        let Some(rest) = begins("vertex") else {
             continue;
         };
         let numbers: Vec<f64> = rest
@@ -149,6 +168,9 @@ fn ascii(text: &str) -> Result<Vec<[Vec3; 3]>, StlError> {
     if corners.len() % 3 != 0 {
         let corners = corners.len();
         return Err(StlError::Corners { corners });
+    }
+    if let (Some(&line), false) = (open.last(), corners.is_empty()) {
+        return Err(StlError::Unended { line });
     }
     Ok(corners
         .chunks_exact(3)

@@ -3,7 +3,7 @@
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasPatch, WallHeat};
 
-use super::model::{Case, Population};
+use super::model::{Case, PlacementSpec, Population};
 use super::units::shown;
 
 /// Temperatures in K beyond which one is likely in another unit, or a slip.
@@ -56,6 +56,26 @@ pub(super) fn all(case: &Case) -> Vec<String> {
     }
     all.extend(strange(&unusual));
     all
+}
+
+/// A warning of strange temperatures that files give particles, one value in K for each with its population.
+pub fn of_files(case: &Case, population: &[u32], temperature: &[f64]) -> Option<String> {
+    let stated: Vec<Stated> = case
+        .particles
+        .iter()
+        .enumerate()
+        .filter(|(_, one)| matches!(one.place, PlacementSpec::File { .. }))
+        .filter(|(_, one)| one.prescribed_temperature.is_none())
+        .filter_map(|(index, one)| {
+            let rows = population.iter().zip(temperature);
+            let own = rows.filter(|(population, _)| **population as usize == index);
+            let values: Vec<f64> = own.map(|(_, value)| *value).collect();
+            let other = values.iter().any(|value| *value != one.temperature);
+            let key = format!("particles.{}.place.file", one.name);
+            other.then(|| Stated::new(key, values))
+        })
+        .collect();
+    strange(&stated)
 }
 
 fn ends((low, high): (f64, f64)) -> String {

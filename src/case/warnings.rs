@@ -9,7 +9,7 @@ use super::flow_numbers::FlowNumbers;
 use super::model::Case;
 use super::packed::BedPacking;
 use super::splitting::Splitting;
-use super::{buoyancy, contacts, flow_time, mesh_shape, patch_cautions, size_cautions};
+use super::{buoyancy, contacts, flow_time, mesh_shape, overlap, patch_cautions, size_cautions};
 
 /// Warnings about a case with its mesh and particles, in a fixed order, each once.
 pub fn warnings(
@@ -24,6 +24,7 @@ pub fn warnings(
         .chain(flow_time::warning(case, mesh, setup, void_fraction))
         .collect();
     all.extend(cautions(case));
+    all.extend(overlap::deepest(case, setup, mesh.periodicity()));
     all.extend(patch_cautions::columns(case, mesh));
     all.extend(size_cautions::pores(case));
     all.extend(mesh_shape::report(mesh).1);

@@ -101,6 +101,11 @@ impl Recorded {
         written.map_err(|error| Failure::told(exit::OTHER, &error))
     }
 
+    /// Its text in a results folder.
+    pub(super) fn json(&self) -> Option<String> {
+        files::json(Path::new(files::COMMAND), self).ok()
+    }
+
     /// What was kept in a results folder.
     pub(super) fn read(out: &Path) -> Result<Self, Failure> {
         let path = out.join(files::COMMAND);

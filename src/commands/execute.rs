@@ -79,6 +79,7 @@ pub(super) fn execute(
         .starts(settings.starts.clone(), settings.transport.name())
         .out(out)
         .resume(settings.resume)
+        .command(settings.recorded.as_ref().and_then(Recorded::json))
         .interrupts(interrupts);
     if let Some(from) = settings.from {
         builder = builder.from(from);

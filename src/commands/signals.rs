@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use calcine_coupler::supervisor::Interrupts;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use super::failure::Failure;
 use crate::exit;
 
-/// Turns Ctrl-C, SIGTERM and `--stop-after` into interrupts.
+/// Turns Ctrl-C, SIGTERM, SIGHUP (a terminal that closes) and `--stop-after` into interrupts. Where SIGHUP is ignored, as under
+/// `nohup`, it stays so.
 pub(super) struct SignalThread(signal_hook::iterator::Handle);
 
 impl SignalThread {
@@ -18,7 +19,11 @@ impl SignalThread {
         interrupts: &Interrupts,
         stop_after: Option<Duration>,
     ) -> Result<Self, Failure> {
-        let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(|cause| {
+        let mut caught = vec![SIGINT, SIGTERM];
+        if !is_ignored(SIGHUP) {
+            caught.push(SIGHUP);
+        }
+        let mut signals = Signals::new(caught).map_err(|cause| {
             Failure::new(
                 exit::OTHER,
                 format_args!("signals cannot be caught: {cause}"),
@@ -38,6 +43,14 @@ impl SignalThread {
         }
         Ok(Self(handle))
     }
+}
+
+/// True of a signal that this process was started to ignore, as Linux tells.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
 impl Drop for SignalThread {

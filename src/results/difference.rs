@@ -20,11 +20,20 @@ pub(crate) fn difference(
     let mut differ = keys(results, effective);
     let there = Summary::read(results).map(|summary| summary.case.files);
     let there = there.unwrap_or_default();
-    let changed = files.iter().filter(|&(name, sum)| {
-        let before = there.get(name);
-        before.is_some_and(|before| before != sum)
-    });
-    differ.extend(changed.map(|(name, _)| format!("`{name}` holds something else than it did")));
+    for name in there
+        .keys()
+        .chain(files.keys().filter(|name| !there.contains_key(*name)))
+    {
+        let what = match (there.get(name), files.get(name)) {
+            (Some(before), Some(now)) if before == now => continue,
+            (Some(_), Some(_)) => "holds something else than it did",
+            (Some(_), None) => "is not there any more",
+            // What wrote the summary may not have kept them.
+            _ if there.is_empty() => continue,
+            _ => "was not there",
+        };
+        differ.push(format!("`{name}` {what}"));
+    }
     match differ.len() {
         0 => String::new(),
         count if count > MOST => {

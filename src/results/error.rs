@@ -33,7 +33,9 @@ pub enum ResultsError {
         "{} is of a case with the hash {stored}, this case has {hash}{keys}",
         path.display()
     )]
-    #[diagnostic(help("resume with the case file and the `--set` values that the run began with"))]
+    #[diagnostic(help(
+        "resume with the case file, the files that it names and the `--set` values that the run began with"
+    ))]
     OtherCase {
         /// The file that says so.
         path: PathBuf,

@@ -73,7 +73,7 @@ pub(super) fn write_over(path: &Path, content: &[u8]) -> Result<(), ResultsError
 }
 
 /// The text of a JSON file.
-pub(super) fn json(path: &Path, value: &impl Serialize) -> Result<String, ResultsError> {
+pub(crate) fn json(path: &Path, value: &impl Serialize) -> Result<String, ResultsError> {
     let mut text = serde_json::to_string_pretty(value)
         .map_err(|error| ResultsError::content(path, error.to_string()))?;
     text.push('\n');

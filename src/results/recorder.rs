@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use calcine_coupler::findings::{Finding, FindingKind};
 use calcine_coupler::ledger::BalanceLine as LedgerSums;
 use calcine_coupler::observer::{CommittedState, CutNotice, Observer, ObserverError, Timing};
 use calcine_coupler::part::SolverInfo;
@@ -273,6 +274,12 @@ impl Recorder {
         self.counters.captured.take(&self.case, moment, sites, true);
         if let Some(words) = self.pace_warning() {
             tracing::warn!("{words}");
+        }
+        if let Some(open) = open_balance(moment) {
+            let time = moment.clocks.process.seconds();
+            for words in warnings::add(&mut self.counters.warnings, &[open], time) {
+                tracing::warn!("{words}");
+            }
         }
         let results = self.counters.captured.results(&self.case, true);
         self.summarise(moment, quantities::overall(results.values()))
@@ -557,6 +564,9 @@ impl Recorder {
     }
 }
 
+/// Relative error above which a balance is open.
+const OPEN: f64 = 1e-3;
+
 impl Open {
     fn keep(&mut self, row: Row) -> Result<(), ResultsError> {
         self.pending.push(row);
@@ -592,6 +602,14 @@ pub fn unoccupied(out: &Path) -> Result<(), ResultsError> {
         state: summary.verdict.state(),
         time: summary.process_time_s,
     })
+}
+
+/// The worse of the balances of mass and energy where it is open by more than round-off and solvers leave.
+fn open_balance(moment: &CommittedState<'_>) -> Option<Finding> {
+    let ledger = moment.ledger;
+    let errors = [ledger.mass.relative_error(), ledger.energy.relative_error()];
+    let worst = errors.into_iter().fold(0.0, f64::max);
+    (worst > OPEN).then(|| Finding::unconverged(FindingKind::OpenBalance, worst, Some(OPEN)))
 }
 
 fn status_of(summary: &Summary) -> Status {

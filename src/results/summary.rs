@@ -141,7 +141,7 @@ pub struct CaseName {
     pub title: String,
     /// SHA-256 of its effective text and of the files that it reads.
     pub hash: String,
-    /// SHA-256 of what is in each of these files; of the triangles of a wall by its key.
+    /// SHA-256 of what is in each of these files, by the key that names it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub files: BTreeMap<String, String>,
 }

@@ -17,7 +17,7 @@ use crate::assembly::{
 use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::laws::LawCatalogue;
-use crate::results::{self, Recorder, RunInfo};
+use crate::results::{self, Recorder, RunInfo, files};
 use crate::valid::ValidCase;
 
 /// A simulation that is not begun yet: the case, and how it is to be run.
@@ -34,6 +34,8 @@ pub struct SimulationBuilder {
     from: Option<PathBuf>,
     interrupts: Interrupts,
     models: Vec<GivenModel>,
+    /// The text of `command.json`, for a run that begins.
+    command: Option<String>,
 }
 
 /// A model of particles that the case file does not know, and the material that it is for.
@@ -73,6 +75,7 @@ impl SimulationBuilder {
             from: None,
             interrupts: Interrupts::default(),
             models: Vec::new(),
+            command: None,
         }
     }
 
@@ -143,6 +146,12 @@ impl SimulationBuilder {
         self
     }
 
+    /// Has the command of a run that begins kept in its folder from the first moment on, as JSON.
+    pub(crate) fn command(mut self, text: Option<String>) -> Self {
+        self.command = text;
+        self
+    }
+
     /// Computes the inside of the particles of a material by a model of one's own, without particles as it is made;
     /// it takes the place of the case's. Columns that it shows come to the results by `output.particles = ["inside"]`.
     #[must_use]
@@ -188,6 +197,9 @@ impl SimulationBuilder {
         let continued = begun_from.map(|from| folder::origin(&from, self.pairing));
         let (origin, provenance) = continued.transpose()?.unzip();
         let claimed = folder::claim(&out)?;
+        if let Some(text) = self.command.filter(|_| !self.resume) {
+            files::replace(&out.join(files::COMMAND), text.as_bytes())?;
+        }
         if again {
             results::clear_start(&out)?;
         }

@@ -16,7 +16,7 @@ use crate::{Files, Target, scratch};
 const MOST: usize = 200;
 
 /// Particles with all that a file may hold.
-const ALL_COLUMNS: &str = "id,type,x,y,z,radius,T,vx,vy,vz,omegax,omegay,omegaz\n\
+const ALL_COLUMNS: &str = "id,type,x,y,z,radius,temperature,vx,vy,vz,omegax,omegay,omegaz\n\
                            7,1,0.005,0.005,0.29,0.001,300,0.1,0,-0.2,0,30,0\n\
                            3,2,0.015,0.015,0.28,0.0015,310,0,0,0,0,0,0\n";
 

@@ -45,6 +45,7 @@ enum Token {
     Close(char),
     Semicolon,
     Word(String),
+    /// `#include`, `#eval` … without what follows.
     Directive,
 }
 
@@ -102,7 +103,10 @@ fn dictionary(
             Token::Close(bracket) => {
                 return Err((line, format!("`{bracket}` closes nothing")));
             }
-            Token::Directive => found.open = true,
+            Token::Directive => {
+                found.open = true;
+                pass_over(tokens, line)?;
+            }
             // OpenFOAM passes over it.
             Token::Semicolon => {}
             // A list or a dictionary without a keyword, as files of lists have them.
@@ -121,6 +125,24 @@ fn dictionary(
             }
         }
     }
+}
+
+/// What a directive in the place of a keyword takes: the rest of its line, with the lists that begin there.
+fn pass_over(tokens: &mut Peekable<IntoIter<(usize, Token)>>, line: usize) -> Result<(), Fault> {
+    while let Some((at, token)) = tokens.peek() {
+        if *at != line || matches!(token, Token::Close(_)) {
+            break;
+        }
+        let opened = match token {
+            Token::Open(bracket) => Some(*bracket),
+            _ => None,
+        };
+        tokens.next();
+        if let Some(bracket) = opened {
+            list(tokens, bracket, line)?;
+        }
+    }
+    Ok(())
 }
 
 fn value(
@@ -197,15 +219,21 @@ fn tokens(text: &str) -> Result<Vec<(usize, Token)>, Fault> {
     let (mut rest, mut line) = (text, 1);
     while let Some(first) = rest.chars().next() {
         let (length, token) = match first {
-            _ if rest.starts_with("//") || (first == '#' && !rest.starts_with("#{")) => {
-                let token = (first == '#').then_some(Token::Directive);
-                (rest.find('\n').unwrap_or(rest.len()), token)
-            }
+            _ if rest.starts_with("//") => (rest.find('\n').unwrap_or(rest.len()), None),
             _ if rest.starts_with("/*") => (until(rest, "*/", line, "comment")?, None),
             _ if rest.starts_with("#{") => (
                 until(rest, "#}", line, "code")?,
                 Some(Token::Word("#{".into())),
             ),
+            '#' => {
+                let name = rest[1..].find(|letter: char| !letter.is_ascii_alphanumeric());
+                (1 + name.unwrap_or(rest.len() - 1), Some(Token::Directive))
+            }
+            _ if rest.starts_with("${") => {
+                let length = rest.find('}').map(|at| at + 1);
+                let length = length.ok_or((line, "a `${` is never closed".to_owned()))?;
+                (length, Some(Token::Word(rest[..length].into())))
+            }
             '"' => {
                 let length = quoted(rest).ok_or((line, "a quote is never closed".to_owned()))?;
                 (
@@ -272,6 +300,11 @@ mod tests {
 
     #[test]
     fn what_openfoam_writes_is_read() {
+        let inline = "a uniform #eval \"0.002*2\";\nb #eval{ 0.002*2 };\nc #calc \"$a\";\nd { ${U}; relTol 0; }\n#ifeq 1 2\ne 1;\n#endif\n\
+                      #remove (a b)\n#inputMode merge;\n";
+        let read = Dictionary::parse(inline).unwrap();
+        let keywords: Vec<&str> = read.entries().iter().map(|entry| &*entry.keyword).collect();
+        assert_eq!(keywords, ["a", "b", "c", "d", "e"]);
         let text = "/* head\n */\nFoamFile { version 2.0; }\n#include \"more\"\nsolvers\n{\n    \"(U|h).*\" { tolerance 1e-6; }\n}\n\
                     dimensions [0 1 -1 0 0 0 0];\ninternalField nonuniform List<vector> 2((0 0 0) (1 2 3));\n\
                     div(phi,U) Gauss linear; // end\ncode #{ if (a) { b; } #};\nA (x { y 1; } z);\n";

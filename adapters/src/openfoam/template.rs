@@ -1,7 +1,8 @@
 //! What of a template cannot be used, all of it at once, before anything is started.
 //!
-//! OpenFOAM ends at the first fault that it meets. Here every file is looked at as far as its own text goes; what it includes,
-//! and what only OpenFOAM knows (names of schemes, models, boundary conditions), stays OpenFOAM's to refuse.
+//! OpenFOAM ends at the first fault that it meets. Here every dictionary is looked at as far as its own text goes: what its structure
+//! is, which dictionaries are missing, what has no effect. What it includes, and what only OpenFOAM knows (names of schemes, models,
+//! boundary conditions, the entries that each of these needs), stays OpenFOAM's to refuse.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,6 +49,14 @@ const NEEDED: [(&str, &[&str]); 2] = [
     ),
     ("system/fvSolution", &["solvers"]),
 ];
+/// Dictionaries that solvers look for by their names.
+const KNOWN: [&str; 5] = [
+    "constant/fvOptions",
+    "constant/turbulenceProperties",
+    "system/controlDict",
+    "system/fvSchemes",
+    "system/fvSolution",
+];
 /// Kinds of turbulence models.
 const KINDS: [&str; 3] = ["laminar", "RAS", "LES"];
 
@@ -66,6 +75,11 @@ pub fn findings(template: &Path, solver: StockSolver, setup: &GasSetup) -> Vec<T
             let Ok(text) = fs::read_to_string(&path) else {
                 continue;
             };
+            // Tables, notes and scripts may lie beside.
+            let known = KNOWN.contains(&file.as_str());
+            if !known && !text.contains("FoamFile") {
+                continue;
+            }
             let mut note = |line: Option<usize>, what: String, remedy: &str| {
                 found.push(TemplateFinding {
                     file: file.clone(),
@@ -76,7 +90,17 @@ pub fn findings(template: &Path, solver: StockSolver, setup: &GasSetup) -> Vec<T
             };
             match Dictionary::parse(&text) {
                 Err((line, what)) => note(Some(line), what, "correct the dictionary there"),
-                Ok(read) => look(&file, &read, solver, &mut note),
+                Ok(read) => {
+                    if read.lacks("FoamFile") {
+                        let what = "it has no head `FoamFile { … }`".to_owned();
+                        note(
+                            None,
+                            what,
+                            "copy the head of another file, with its own `object`",
+                        );
+                    }
+                    look(&file, &read, solver, &mut note);
+                }
             }
         }
     }
@@ -108,7 +132,12 @@ pub fn written(setup: &GasSetup) -> Vec<String> {
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    let mut files: Vec<PathBuf> = paths.filter(|path| path.is_file()).collect();
+    let is_meant = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        // Not what editors leave.
+        path.is_file() && !name.starts_with('.') && !name.ends_with('~')
+    };
+    let mut files: Vec<PathBuf> = paths.filter(is_meant).collect();
     files.sort();
     files
 }

@@ -57,7 +57,7 @@ fn sheet(path: &Path, bytes: &[u8], choice: Choice) -> Result<Sheet, Fault> {
     match extension.as_deref() {
         Some("vtu" | "vtp") => xml::sheet(bytes),
         Some("vtk") => legacy::sheet(text()?),
-        Some("csv" | "txt") => csv::sheet(text()?),
+        Some("csv" | "txt") => csv::sheet(text()?).and_then(Sheet::checked),
         // LIGGGHTS names dumps as users like, often by the step: bed.dump, dump.liggghts, d1000.
         _ if bytes.starts_with(b"ITEM:") => dump::sheet(text()?, choice.timestep),
         _ => {

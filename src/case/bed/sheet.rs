@@ -75,6 +75,24 @@ const SPIN: [[&str; 3]; 3] = [
     ["omegaz", "angular_velocity:2", "omega:2"],
 ];
 
+/// Columns of text files that people write and that are not read, and what to do.
+const MEANT: [(&[&str], &str); 5] = [
+    (
+        &["d", "dp", "diam", "size"],
+        "name it `diameter`, or leave it out",
+    ),
+    (&["r", "rp"], "name it `radius`, or leave it out"),
+    (
+        &["u", "v", "w", "ux", "uy", "uz"],
+        "name velocities `vx`, `vy` and `vz`, or leave them out",
+    ),
+    (
+        &["wx", "wy", "wz"],
+        "name angular velocities `omegax`, `omegay` and `omegaz`, or leave them out",
+    ),
+    (&["t", "temp"], "name it `temperature`, or leave it out"),
+];
+
 const DIAMETER: [&str; 1] = ["diameter"];
 
 const RADIUS: [&str; 1] = ["radius"];
@@ -146,6 +164,29 @@ impl Sheet {
         }
     }
 
+    /// The sheet, of a text that people write.
+    pub(super) fn checked(self) -> Result<Self, Fault> {
+        self.check_names()?;
+        Ok(self)
+    }
+
+    /// No column twice, and none that looks like a size, a velocity or a temperature under a name that is not read.
+    fn check_names(&self) -> Result<(), Fault> {
+        for (index, (name, _)) in self.columns.iter().enumerate() {
+            if self.columns[..index].iter().any(|(other, _)| other == name) {
+                return Err((None, format!("it has two columns `{name}`; leave one out")));
+            }
+            let meant = MEANT
+                .iter()
+                .find(|(names, _)| names.contains(&name.as_str()));
+            if let Some((_, meant)) = meant {
+                let fact = format!("its column `{name}` is not read; {meant}");
+                return Err((None, fact));
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn entries(&self, choice: Choice) -> Result<Vec<Entry>, Fault> {
         let [x, y, z] = AXES.map(|names| self.column(&names));
         let (Some(x), Some(y), Some(z)) = (x, y, z) else {
@@ -173,6 +214,13 @@ impl Sheet {
         if let Some(id) = self.column(&ID) {
             // Programs in parallel write in any order; the sort keeps equal ids as they stand.
             order.sort_by(|&a, &b| id[a].total_cmp(&id[b]));
+            if let Some(pair) = order.windows(2).find(|pair| id[pair[0]] == id[pair[1]]) {
+                let what = format!(
+                    "the id {} stands there twice; give each particle its own",
+                    id[pair[1]]
+                );
+                return Err((Some(self.row(pair[1])), what));
+            }
         }
         if let (Some(kind), true) = (choice.kind, order.is_empty()) {
             return Err((None, format!("it has no particle of type {kind}")));

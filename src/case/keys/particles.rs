@@ -74,7 +74,7 @@ pub(super) const PARTICLES: &[Key] = &[
     key("temperature", Number(D::TEMPERATURE, Positive), OneOf, "Temperature at the start. Either this or `prescribed_temperature`.", "\"300 K\""),
     key("prescribed_temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature over process time, whatever heat the particles take or give: a boundary condition. What that takes from outside is `prescribed_heat` in the ledger. Not of a material that reacts. Either this or `temperature`.", "[[\"0 s\", \"300 K\"], [\"10 min\", \"600 K\"]]"),
     key("weight", Number(D::NONE, Positive), Default("1"), "Statistical weight: how many real particles of this diameter each particle stands for, in all that it exchanges with the gas. Other than 1 for motion = \"frozen\" and \"parcels\" only, and without heat between particles.", "2.5"),
-    key("place", Table(PLACE), Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres may overlap by 5 % of their diameter, as where they are pressed together.", "{ file = \"bed.csv\" }"),
+    key("place", Table(PLACE), Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres of two populations may overlap by 5 % of the sum of their radii, of one population by 20 %.", "{ file = \"bed.csv\" }"),
 ];
 
 #[rustfmt::skip]
