@@ -1,9 +1,14 @@
 //! Distributions over size classes.
 
+use std::fmt::Display;
+
 use crate::{PlantError, SizeGrid};
 
-/// Share of a distribution that may lie outside of its grid.
+/// Share of a distribution that may lie beyond either end of its grid.
 pub const OUTSIDE: f64 = 1e-6;
+
+/// Standard deviations beyond which [`OUTSIDE`] of a normal distribution lies on one side.
+const TAIL: f64 = 4.753_424_308_823;
 
 /// Shares of mass in each class of a normal distribution of diameters, by density at the middle of the classes and then
 /// normalised, as Dyssol evaluates it (second order in the width of classes). `place` is what an error names.
@@ -11,30 +16,52 @@ pub fn normal_shares(
     grid: &SizeGrid,
     mean: f64,
     deviation: f64,
-    place: &str,
+    place: impl Display,
 ) -> Result<Vec<f64>, PlantError> {
     for (quantity, value) in [("mean diameter", mean), ("standard deviation", deviation)] {
         if !(value.is_finite() && value > 0.0) {
             return Err(PlantError::Value {
-                place: place.to_owned(),
+                place: place.to_string(),
                 quantity,
                 value,
                 allowed: "it is above 0 m",
             });
         }
     }
+    let below_zero = normal_below(0.0, mean, deviation);
+    if below_zero > OUTSIDE {
+        return Err(PlantError::BelowZero {
+            place: place.to_string(),
+            mean,
+            deviation,
+            share: below_zero,
+            most: rounded(mean / TAIL, deviation, f64::floor),
+        });
+    }
     let (from, to) = grid.range();
-    let share = normal_below(from, mean, deviation) + 1.0 - normal_below(to, mean, deviation);
-    if share > OUTSIDE {
-        let place = place.to_owned();
+    // Of the mirrored distribution, so that a small share above is not lost in 1 − x.
+    let (below, above) = (
+        normal_below(from, mean, deviation),
+        normal_below(-to, -mean, deviation),
+    );
+    if below > OUTSIDE || above > OUTSIDE {
+        let reach = TAIL * deviation;
         return Err(PlantError::OutsideGrid {
-            place,
-            share,
+            place: place.to_string(),
+            share: below + above,
             from,
             to,
+            low: rounded((mean - reach).max(0.0), deviation, f64::floor).min(from),
+            high: rounded(mean + reach, deviation, f64::ceil).max(to),
         });
     }
     Ok(normal_row(grid, mean, deviation))
+}
+
+/// A length to two digits more than those of another, for people to read.
+fn rounded(length: f64, of: f64, way: impl Fn(f64) -> f64) -> f64 {
+    let scale = 10f64.powi(1 - of.log10().floor() as i32);
+    way(length * scale) / scale
 }
 
 /// [`normal_shares`] of numbers that were looked at before. A distribution narrower than the classes falls into one.
@@ -150,6 +177,47 @@ mod tests {
         };
         // One standard deviation: 15.87 %.
         assert!((share - 0.158_655_253_931).abs() < 1e-11, "{share}");
+    }
+
+    /// What an error tells to do is done, and does.
+    #[test]
+    fn what_is_told_of_a_distribution_beyond_its_grid_mends_it() {
+        for (mean, deviation) in [
+            (2e-3, 1.3e-4),
+            (3.97e-3, 1e-6),
+            (1.1e-3, 7.7e-5),
+            (1e-3, 2.1e-4),
+        ] {
+            let grid = SizeGrid::uniform(40, 1.05e-3, 3.95e-3).unwrap();
+            match normal_shares(&grid, mean, deviation, "feed") {
+                Err(PlantError::OutsideGrid { low, high, .. }) => {
+                    let wider = SizeGrid::uniform(40, low, high).unwrap();
+                    assert!(
+                        normal_shares(&wider, mean, deviation, "feed").is_ok(),
+                        "{mean}"
+                    );
+                    // No more than what it takes.
+                    assert!(low >= mean - 5.0 * deviation || low == 1.05e-3, "{low}");
+                    assert!(high <= mean + 5.0 * deviation || high == 3.95e-3, "{high}");
+                }
+                other => assert!(other.is_ok() && mean == 2e-3, "{other:?}"),
+            }
+        }
+    }
+
+    /// No grid holds it, wherever it begins: the grid is not what is told to change.
+    #[test]
+    fn a_distribution_that_reaches_below_zero_is_told_so() {
+        let grid = SizeGrid::uniform(40, 0.0, 4e-3).unwrap();
+        let told = normal_shares(&grid, 1e-3, 4e-4, "feed").unwrap_err();
+        let text = told.to_string();
+        let PlantError::BelowZero { share, most, .. } = told else {
+            panic!("{told}");
+        };
+        // Φ(−2.5) = 6.2097e-3.
+        assert!((share - 6.209_665_325_776e-3).abs() < 1e-12, "{share}");
+        assert!(normal_shares(&grid, 1e-3, most, "feed").is_ok());
+        assert!(!text.contains("size classes begin"), "{text}");
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub enum PlantError {
     },
     /// A distribution that does not fit its grid.
     #[error(
-        "{place}: {share:.3e} of the distribution lies outside of the size grid, {from} m to {to} m; widen the grid"
+        "{place}: {share:.3e} of the distribution lies outside of the size grid, {from} m to {to} m; let the size classes begin at {low} m or below and end at {high} m or above"
     )]
     OutsideGrid {
         /// Unit or stream.
@@ -33,6 +33,58 @@ pub enum PlantError {
         share: f64,
         /// First edge of the grid in m.
         from: f64,
+        /// Last edge of the grid in m.
+        to: f64,
+        /// First edge in m that would do.
+        low: f64,
+        /// Last edge in m that would do.
+        high: f64,
+    },
+    /// A normal distribution that no grid holds.
+    #[error(
+        "{place}: a normal distribution of mean {mean:.3e} m and standard deviation {deviation:.3e} m has {share:.3e} of its mass below 0 m, where no size class can be; lower the deviation to {most} m or less, or raise the mean"
+    )]
+    BelowZero {
+        /// Unit or stream.
+        place: String,
+        /// Mean in m.
+        mean: f64,
+        /// Standard deviation in m.
+        deviation: f64,
+        /// Share of the mass below zero.
+        share: f64,
+        /// Largest deviation in m that would do.
+        most: f64,
+    },
+    /// A mill whose power makes a product that its law cannot describe.
+    #[error(
+        "{place}: {power:.3e} W on {flow:.3e} kg/s mill to an x80 of {size:.3e} m, and of its normal distribution with the deviation {deviation:.3e} m {share:.3e} of the mass lies below 0 m, where no size class can be; lower the power or the deviation of the mill, or lead more solids into it"
+    )]
+    MilledTooFine {
+        /// Unit.
+        place: String,
+        /// Power in W.
+        power: f64,
+        /// Solids that flow in, in kg/s.
+        flow: f64,
+        /// x₈₀ of the product in m.
+        size: f64,
+        /// Standard deviation of the product in m.
+        deviation: f64,
+        /// Share of the mass below zero.
+        share: f64,
+    },
+    /// Particles that have come into the last class of the grid.
+    #[error(
+        "{place} at {time} s: {share:.3e} of the mass is in the last size class, beyond which nothing grows; let the size classes end above {to} m, or the plant take large particles out"
+    )]
+    GrownBeyond {
+        /// Unit.
+        place: String,
+        /// Time in s.
+        time: f64,
+        /// Share of the mass in the last class.
+        share: f64,
         /// Last edge of the grid in m.
         to: f64,
     },

@@ -329,7 +329,7 @@ fn a_granulator_has_dyssols_flows() {
     }
     assert!(run.ledger().worst() < 1e-12);
     let told = run.advance(30.0).unwrap_err();
-    assert!(matches!(told, PlantError::OutsideGrid { .. }), "{told}");
+    assert!(matches!(told, PlantError::GrownBeyond { .. }), "{told}");
 }
 
 /// `Process_Comminution`: mixer, mill, splitter and a delay back to the mixer.

@@ -229,15 +229,15 @@ fn a_bed_that_is_not_held_finds_its_temperature() {
     assert!(worst.worst() < 1e-12, "{:#?}", worst.lines);
 }
 
-/// Of 0.1 kg/s sprayed 30 % become dust, of which 40 % stay as nuclei of the second class.
+/// Of 0.1 kg/s sprayed 30 % become dust, of which 40 % stay as nuclei of 0.15 mm.
 #[test]
 fn overspray_leaves_or_becomes_nuclei() {
-    let grid = SizeGrid::uniform(40, 0.0, 4e-3).unwrap();
+    let grid = SizeGrid::uniform(600, 0.0, 4e-3).unwrap();
     let layout = plain(grid.clone());
     let shares = normal_shares(&grid, 2e-3, 2e-4, "bed").unwrap();
     let content: Vec<f64> = shares.iter().map(|share| 10.0 * share).collect();
-    let mut sizes = vec![0.0; 40];
-    sizes[1] = 1.0;
+    let mut sizes = vec![0.0; 600];
+    sizes[22] = 1.0;
     let bed = Granulator::new(content, 1320.0).with_overspray(Overspray {
         share: 0.3,
         returned: 0.4,
@@ -249,13 +249,22 @@ fn overspray_leaves_or_becomes_nuclei() {
     let feeds = vec![always(none.clone()), always(spray), always(none)];
     let plant = alone(layout.clone(), bed, feeds);
     let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-8).unwrap();
-    assert!((flow(&plant, &run, "exhaust")[1] - 0.3 * 0.6 * 0.1).abs() < 1e-16);
+    assert!((flow(&plant, &run, "exhaust")[22] - 0.3 * 0.6 * 0.1).abs() < 1e-16);
     let product = layout.solid_flow(&flow(&plant, &run, "product"));
     assert!((product - (0.07 + 0.012)).abs() < 1e-15, "{product}");
     run.advance(5.0).unwrap();
-    // Nuclei of 5 s, some of which have grown on.
-    let small: f64 = run.unit(0)[..8].iter().sum();
-    assert!((0.9 * 0.06..1.6 * 0.06).contains(&small), "{small}");
+    // Nuclei of 5 s, which all grow on: their number, less what leaves with the product, and their mass by characteristics.
+    let small = &run.unit(0)[..120];
+    let particle = |d: f64| 1320.0 * std::f64::consts::PI / 6.0 * d.powi(3);
+    let pairs = small.iter().zip(grid.diameters());
+    let number: f64 = pairs.map(|(mass, d)| mass / particle(*d)).sum();
+    let leaves = 0.082 / 10.0;
+    let born = 0.012 / particle(0.15e-3);
+    let expected = born * (1.0 - (-5.0f64 * leaves).exp()) / leaves;
+    assert!((number / expected - 1.0).abs() < 1e-6, "{number}");
+    let mass: f64 = small.iter().sum();
+    println!("nuclei: {mass} kg of 0.0730");
+    assert!((mass / 0.0730 - 1.0).abs() < 0.03, "{mass}");
     assert!(run.ledger().worst() < 1e-13);
 }
 

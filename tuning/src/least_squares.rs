@@ -154,6 +154,15 @@ impl<'a> Walk<'a> {
         Ok(chosen.map(|&k| std::mem::take(&mut all[k])).collect())
     }
 
+    /// [`Self::at`] of a trial: none where the problem could not be evaluated there.
+    fn trial(&mut self, places: &[f64]) -> Result<Option<Vec<Vec<f64>>>, TuningError> {
+        match self.at(places) {
+            Ok(lists) => Ok(Some(lists)),
+            Err(TuningError::Interrupted) => Err(TuningError::Interrupted),
+            Err(_) => Ok(None),
+        }
+    }
+
     /// Weights 1/σ of what is left of each objective.
     fn reweigh(&mut self) {
         for (weight, list) in self.weights.iter_mut().zip(&self.lists) {
@@ -169,7 +178,8 @@ impl<'a> Walk<'a> {
             .sum()
     }
 
-    /// Columns of difference quotients of the weighted differences.
+    /// Columns of difference quotients of the weighted differences: from one side where the problem cannot be evaluated on the
+    /// other, and zero, a parameter that stays, where on neither.
     fn quotients(&mut self) -> Result<Vec<Vec<f64>>, TuningError> {
         let step = self.problem.step();
         let mut columns = Vec::with_capacity(self.free.len());
@@ -178,9 +188,15 @@ impl<'a> Walk<'a> {
             let (low, high) = ((place - step).max(0.0), (place + step).min(1.0));
             let mut at = self.places.clone();
             at[k] = high;
-            let above = self.at(&at)?;
+            let above = self.trial(&at)?;
             at[k] = low;
-            let below = self.at(&at)?;
+            let below = self.trial(&at)?;
+            let (high, above) = above.map_or((place, self.lists.clone()), |lists| (high, lists));
+            let (low, below) = below.map_or((place, self.lists.clone()), |lists| (low, lists));
+            if high <= low {
+                columns.push(vec![0.0; self.lists.iter().map(Vec::len).sum()]);
+                continue;
+            }
             let mut column = Vec::new();
             for ((above, below), weight) in above.iter().zip(&below).zip(&self.weights) {
                 let pairs = above.iter().zip(below);
@@ -220,7 +236,7 @@ impl<'a> Walk<'a> {
             if moved < STILL {
                 return Ok(());
             }
-            let lists = self.at(&next).ok();
+            let lists = self.trial(&next)?;
             let reached = lists
                 .as_ref()
                 .map_or(f64::INFINITY, |lists| self.weighted(lists));
@@ -433,6 +449,42 @@ mod tests {
             .max((both.places[1] - best.2).abs());
         assert!(off < 1e-4, "{:?} {best:?}", both.places);
         assert!(both.sums[0] <= best.0);
+    }
+
+    /// The same where it can be evaluated up to a limit of b alone, just above the best value.
+    struct Limited(Decay, f64);
+
+    impl TuningProblem for Limited {
+        fn space(&self) -> &ParameterSpace {
+            self.0.space()
+        }
+        fn objectives(&self) -> &[String] {
+            self.0.objectives()
+        }
+        fn differences(&self, places: &[f64], out: &mut Vec<Vec<f64>>) -> Result<(), TuningError> {
+            if places[1] > self.1 {
+                return Err(TuningError::Model("b is too large".into()));
+            }
+            self.0.differences(places, out)
+        }
+    }
+
+    /// Trials that fail are failed trials: the fit goes round them, and ends without the start alone.
+    #[test]
+    fn a_fit_goes_on_beside_trials_that_fail() {
+        let only = FitChoice {
+            objectives: vec![0],
+            ..FitChoice::default()
+        };
+        let problem = Limited(Decay::new(3.0, 0.4, &[0.0]), 0.4 + 5e-5);
+        let fitted = fit(&problem, &[0.9, 0.1], &only).unwrap();
+        let values = problem.space().values(&fitted.places);
+        assert!((values[0] - 3.0).abs() < 1e-6, "{values:?}");
+        assert!((values[1] - 0.4).abs() < 1e-6, "{values:?}");
+        assert!(matches!(
+            fit(&problem, &[0.9, 0.9], &only),
+            Err(TuningError::Model(_))
+        ));
     }
 
     #[test]

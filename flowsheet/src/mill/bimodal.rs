@@ -1,5 +1,7 @@
 //! Bond's law with particles that break in two.
 
+use std::fmt::Display;
+
 use calcine_physics::law::LawEntry;
 
 use super::bond::{POWER, WORK_INDEX};
@@ -48,7 +50,7 @@ impl MillLaw for BondBimodal {
         &self,
         grid: &SizeGrid,
         feed: &[f64],
-        place: &str,
+        place: &dyn Display,
     ) -> Result<Transformation, PlantError> {
         self.bond.check(place)?;
         let count = grid.classes();
@@ -74,7 +76,7 @@ impl MillLaw for BondBimodal {
         let least = size_at(1.0);
         if wanted.is_nan() || wanted < least {
             return Err(PlantError::Value {
-                place: place.to_owned(),
+                place: place.to_string(),
                 quantity: "x80 of the product in m",
                 value: wanted,
                 allowed: "particles break in two once and do not get that small; lower the power, or take `bond-normal`",

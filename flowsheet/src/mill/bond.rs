@@ -1,5 +1,7 @@
 //! Bond's law.
 
+use std::fmt::Display;
+
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawParameter};
 
@@ -32,7 +34,7 @@ pub(super) const POWER: LawParameter = LawParameter {
 pub enum BondLength {
     /// 1 µm, as Bond has it.
     Micrometre,
-    /// 1 mm, as Dyssol has it (`bond-mm`): the same work mills much more finely.
+    /// 1 mm, as Dyssol has it (`bond-mm`): the same work mills much less finely.
     Millimetre,
 }
 
@@ -66,12 +68,12 @@ impl BondLaw {
     }
 
     /// Refuses numbers that the law cannot have.
-    pub(super) fn check(&self, place: &str) -> Result<(), PlantError> {
+    pub(super) fn check(&self, place: &dyn Display) -> Result<(), PlantError> {
         let numbers = [("work index", self.work_index), ("power", self.power)];
         for (quantity, value) in numbers {
             if !(value.is_finite() && value > 0.0) {
                 return Err(PlantError::Value {
-                    place: place.to_owned(),
+                    place: place.to_string(),
                     quantity,
                     value,
                     allowed: "it is above zero",
@@ -94,11 +96,14 @@ mod tests {
             length,
         };
         // 0.8 kW at 0.18 t/h (0.05 kg/s) are 4.444 kWh/t; feed 2.5 mm.
-        let fine = law(BondLength::Millimetre).product_size(2.5e-3, 0.05);
+        let by_millimetre = law(BondLength::Millimetre).product_size(2.5e-3, 0.05);
         // 1/(4.44444/75 + 1/√2.5)² mm = 1/(0.0592593 + 0.6324555)² mm.
-        assert!((fine - 2.089_99e-3).abs() < 1e-8, "{fine}");
+        assert!(
+            (by_millimetre - 2.089_99e-3).abs() < 1e-8,
+            "{by_millimetre}"
+        );
         // 1/(0.0592593 + 1/√2500)² µm = 1/0.0792593² µm.
-        let coarse = law(BondLength::Micrometre).product_size(2.5e-3, 0.05);
-        assert!((coarse - 159.183e-6).abs() < 1e-8, "{coarse}");
+        let by_micrometre = law(BondLength::Micrometre).product_size(2.5e-3, 0.05);
+        assert!((by_micrometre - 159.183e-6).abs() < 1e-8, "{by_micrometre}");
     }
 }

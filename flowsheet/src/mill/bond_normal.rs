@@ -1,12 +1,14 @@
 //! Bond's law with a normal distribution.
 
+use std::fmt::Display;
+
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
 use super::bond::{POWER, WORK_INDEX};
 use super::model::MillLaw;
 use super::{BondLaw, BondLength};
-use crate::distribution::{normal_shares, quantile};
+use crate::distribution::{OUTSIDE, normal_below, normal_shares, quantile};
 use crate::{PlantError, SizeGrid, Transformation};
 
 /// Key of the product's deviation.
@@ -41,12 +43,24 @@ impl MillLaw for BondNormal {
         &self,
         grid: &SizeGrid,
         feed: &[f64],
-        place: &str,
+        place: &dyn Display,
     ) -> Result<Transformation, PlantError> {
         self.bond.check(place)?;
         let flow: f64 = feed.iter().sum();
         let size = quantile(grid, feed, 0.8).unwrap_or(f64::NAN);
-        let mean = self.bond.product_size(size, flow) - 0.83 * self.deviation;
+        let made = self.bond.product_size(size, flow);
+        let mean = made - 0.83 * self.deviation;
+        let share = normal_below(0.0, mean, self.deviation);
+        if share > OUTSIDE {
+            return Err(PlantError::MilledTooFine {
+                place: place.to_string(),
+                power: self.bond.power,
+                flow,
+                size: made,
+                deviation: self.deviation,
+                share,
+            });
+        }
         let row = normal_shares(grid, mean, self.deviation, place)?;
         Ok(Transformation::Uniform(row))
     }

@@ -1,5 +1,7 @@
 //! A cone crusher.
 
+use std::fmt::Display;
+
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
@@ -59,7 +61,7 @@ impl MillLaw for ConeMill {
         &self,
         grid: &SizeGrid,
         _feed: &[f64],
-        place: &str,
+        place: &dyn Display,
     ) -> Result<Transformation, PlantError> {
         for (quantity, value) in [
             ("closed-side setting", self.closed_side_setting),
@@ -71,7 +73,7 @@ impl MillLaw for ConeMill {
         ] {
             if !(value.is_finite() && value > 0.0) {
                 return Err(PlantError::Value {
-                    place: place.to_owned(),
+                    place: place.to_string(),
                     quantity,
                     value,
                     allowed: "it is above zero",
@@ -188,7 +190,7 @@ mod tests {
         // 1 − (0.02/0.056)².
         assert!((law.selected(0.06) - (1.0 - 0.127_551_020_408)).abs() < 1e-12);
         let grid = SizeGrid::uniform(50, 0.0, 0.1).unwrap();
-        let made = law.transformation(&grid, &[], "mill").unwrap();
+        let made = law.transformation(&grid, &[], &"mill").unwrap();
         assert!(made.loss(50) < 1e-14);
         // Of 81 mm (all selected), below 10 mm: ½ 0.01^q (1 + tanh(7/3)) over ½ 0.081^q (1 + tanh(26)).
         let Transformation::Full(matrix) = made else {

@@ -1,5 +1,7 @@
 //! A product that does not depend on the feed.
 
+use std::fmt::Display;
+
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
@@ -36,7 +38,7 @@ impl MillLaw for ConstantMill {
         &self,
         _grid: &SizeGrid,
         _feed: &[f64],
-        _place: &str,
+        _place: &dyn Display,
     ) -> Result<Transformation, PlantError> {
         Ok(Transformation::Uniform(self.row.clone()))
     }

@@ -1,5 +1,7 @@
 //! What every law of a mill is.
 
+use std::fmt::Display;
+
 use crate::{PlantError, SizeGrid, Transformation};
 
 /// What a mill makes of a distribution.
@@ -14,7 +16,7 @@ pub trait MillLaw: Send + Sync {
         &self,
         grid: &SizeGrid,
         feed: &[f64],
-        place: &str,
+        place: &dyn Display,
     ) -> Result<Transformation, PlantError>;
 
     /// Power drawn in W, which heats what is milled.

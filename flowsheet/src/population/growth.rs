@@ -44,13 +44,16 @@ impl SizeFluxes {
         }
     }
 
-    /// Slope of the number density in a class, limited; `forward` where particles grow.
-    fn slope(&self, densities: &[f64], class: usize, forward: bool) -> f64 {
-        if class == 0 || class + 1 == densities.len() || self.scheme == GrowthScheme::Upwind {
+    /// Slope of the number density in a class, limited; `forward` where particles grow. Of the differences to its neighbours the
+    /// `jumps` are taken away first, by which the density rises over the class before and the class after.
+    fn slope(&self, densities: &[f64], jumps: [f64; 2], class: usize, forward: bool) -> f64 {
+        if class == 0 || class + 1 == densities.len() {
             return 0.0;
         }
-        let before = (densities[class] - densities[class - 1]) * self.inverse_gaps[class - 1];
-        let after = (densities[class + 1] - densities[class]) * self.inverse_gaps[class];
+        let [below, above] = jumps;
+        let before =
+            (densities[class] - densities[class - 1] - below) * self.inverse_gaps[class - 1];
+        let after = (densities[class + 1] - densities[class] - above) * self.inverse_gaps[class];
         if before * after <= 0.0 {
             return 0.0;
         }
@@ -76,11 +79,32 @@ impl SizeFluxes {
     }
 
     /// Number density in 1/m at the face above each class but the last, as growing particles bring it.
-    pub fn growing(&self, numbers: &[f64], faces: &mut [f64]) {
+    ///
+    /// `births` are the particles that come into each class, over their growth, in 1/m: B_i/G_i. Where they stay the density
+    /// rises by so much over the class, G ∂n/∂d = B/Δ, which is no slope between neighbours: particles that come into an empty
+    /// class stand at its middle, and have half of it before them. They raise it by no more than twice the density of the class, which then
+    /// lies in its upper half.
+    pub fn growing(&self, numbers: &[f64], births: &[f64], faces: &mut [f64]) {
         let densities = self.densities(numbers);
+        if self.scheme == GrowthScheme::Upwind {
+            faces.copy_from_slice(&densities[..faces.len()]);
+            return;
+        }
+        let rises: Vec<f64> = births
+            .iter()
+            .zip(&densities)
+            .map(|(birth, density)| limited(*birth, 2.0 * density.max(0.0)))
+            .collect();
+        let half = |class: usize| 0.5 * rises[class];
         for (class, face) in faces.iter_mut().enumerate() {
-            let half = 0.5 * self.widths[class];
-            *face = densities[class] + half * self.slope(&densities, class, true);
+            let mut slope = 0.0;
+            if class > 0 {
+                let jumps = [half(class - 1) + half(class), half(class) + half(class + 1)];
+                slope = self.slope(&densities, jumps, class, true);
+            }
+            let there = densities[class] + 0.5 * self.widths[class] * slope + half(class);
+            // Births on both sides could turn it.
+            *face = there.max(0.0);
         }
     }
 
@@ -90,7 +114,23 @@ impl SizeFluxes {
         for (below, face) in faces.iter_mut().enumerate() {
             let class = below + 1;
             let half = 0.5 * self.widths[class];
-            *face = densities[class] - half * self.slope(&densities, class, false);
+            let slope = match self.scheme {
+                GrowthScheme::Upwind => 0.0,
+                _ => self.slope(&densities, [0.0; 2], class, false),
+            };
+            *face = densities[class] - half * slope;
         }
     }
+}
+
+/// `x` as long as it is well below `most`, and no more than that: x + r⁴ (most − x) with r = x/most, whose slope is zero at `most`.
+fn limited(x: f64, most: f64) -> f64 {
+    if x <= 0.0 || most <= 0.0 {
+        return 0.0;
+    }
+    if x >= most {
+        return most;
+    }
+    let square = (x / most).powi(2);
+    x + square * square * (most - x)
 }

@@ -39,7 +39,8 @@ impl ProcessUnit for Mill {
                 time: view.time,
             });
         }
-        let moved = self.law.transformation(layout.grid(), &sizes, view.name)?;
+        let place = format_args!("mill \"{}\" at {} s", view.name, view.time);
+        let moved = self.law.transformation(layout.grid(), &sizes, &place)?;
         moved.apply(layout, feed, out);
         let rest = layout.solids()..layout.width();
         out[rest.clone()].copy_from_slice(&feed[rest]);

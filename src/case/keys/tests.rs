@@ -18,7 +18,11 @@ fn ask(kind: &CaseKind, root: &TableReader<'_>, path: &Path, text: &str) {
             crate::case::sections::tuning::tuning(root, path, text, String::new());
         }
         "flowsheet" => {
-            crate::case::plant::plant(root, path, text, String::new(), path.parent());
+            let given = crate::case::plant::Given {
+                beds_in: path.parent(),
+                idle_windows: false,
+            };
+            crate::case::plant::plant(root, path, text, String::new(), given);
         }
         other => panic!("which reader takes a case of kind \"{other}\"?"),
     }

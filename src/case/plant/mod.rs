@@ -21,6 +21,7 @@ pub use model::{
     PlantQuantity, PlantTunedKey, PlantTuningSpec, SteadySpec,
 };
 #[cfg(test)]
-pub(in crate::case) use read::plant;
+#[cfg(test)]
+pub(in crate::case) use read::{Given, plant};
 pub use read::{parse_plant, read_plant, read_plant_results, read_plant_with};
 pub use words::{LimitField, OverTime, PlantField, SteadyField, SteadyFrom};

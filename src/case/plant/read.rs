@@ -46,8 +46,17 @@ fn parse_plant_with(
 ) -> Result<PlantCase, CaseErrors> {
     let kind = kind_named("flowsheet").unwrap_or(&KINDS[0]);
     let folder = path.parent().unwrap_or(Path::new("."));
+    // The other way of closing recycles, chosen for one run, leaves the file's windows as they are.
+    let chosen = |setting: &String| {
+        let key = setting.split_once('=').map(|(key, _)| key.trim());
+        key == Some("method.recycles")
+    };
+    let given = Given {
+        beds_in: Some(folder),
+        idle_windows: set.iter().any(chosen),
+    };
     let (mut case, changes) = parse_as(path, text, set, kind, laws, |root, effective, hash| {
-        plant(root, path, effective, hash, Some(folder))
+        plant(root, path, effective, hash, given)
     })?;
     case.changes = changes;
     case.hash = with_beds(&case);
@@ -60,7 +69,11 @@ pub fn read_plant_results(path: &Path) -> Result<PlantCase, CaseErrors> {
     let laws = LawCatalogue::default();
     let text = text_of(path)?;
     let (case, _) = parse_as(path, &text, &[], kind, &laws, |root, effective, hash| {
-        plant(root, path, effective, hash, None)
+        let given = Given {
+            beds_in: None,
+            idle_windows: true,
+        };
+        plant(root, path, effective, hash, given)
     })?;
     Ok(case)
 }
@@ -79,14 +92,24 @@ fn with_beds(case: &PlantCase) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// What a file is read with.
+#[derive(Clone, Copy)]
+pub(in crate::case) struct Given<'a> {
+    /// Folder of the cases of beds, and of measurements; `None`: they are left out.
+    pub beds_in: Option<&'a Path>,
+    /// True where windows of waveform relaxation may stand in the file beside `recycles = "monolithic"`.
+    pub idle_windows: bool,
+}
+
 /// Reads all sections; `None` where one could not be read (its problems are recorded).
 pub(in crate::case) fn plant(
     root: &TableReader<'_>,
     path: &Path,
     effective: &str,
     hash: String,
-    beds_in: Option<&Path>,
+    given: Given<'_>,
 ) -> Option<PlantCase> {
+    let beds_in = given.beds_in;
     if root.whole("format").is_some_and(|format| format != FORMAT) {
         let rule = "is not 1, the only one there is";
         root.fail("format", rule, "write format = 1");
@@ -103,7 +126,7 @@ pub(in crate::case) fn plant(
         table.finish();
         (end, every, wall)
     });
-    let (method, tears) = method(root).unzip();
+    let (method, tears) = method(root, given.idle_windows).unzip();
     let tears = tears.flatten();
     let layout = layout(root);
     let read = layout
@@ -202,13 +225,17 @@ pub(in crate::case) fn plant(
     })
 }
 
-fn method(root: &TableReader<'_>) -> Option<(PlantMethod, Option<Vec<String>>)> {
+fn method(
+    root: &TableReader<'_>,
+    idle_windows: bool,
+) -> Option<(PlantMethod, Option<Vec<String>>)> {
     let table = root.table_or_empty("method")?;
     let recycles = table.choice::<RecycleMethod>("recycles");
     let integrator = table.choice::<PlantIntegrator>("integrator");
     let tolerance = table.number("tolerance");
     let windows = match recycles {
         Some(RecycleMethod::Waveform) => waveform(&table).map(Some),
+        _ if idle_windows => waveform(&table).map(|_| None),
         _ => Some(None),
     };
     let tears = match table.has("tears") {

@@ -69,6 +69,19 @@ pub(super) fn distribution(
     made
 }
 
+/// What `sizes` would have to be for diameters in m.
+fn holding(grid: &SizeGrid, smallest: f64, largest: f64) -> String {
+    let (from, to) = grid.range();
+    let begins = smallest < from;
+    let begin = format!("begin at {} m or below", shown(smallest));
+    let end = format!("end above {} m", shown(largest));
+    match (begins, largest > to || !begins) {
+        (true, true) => format!("let `sizes` {begin} and {end}"),
+        (true, false) => format!("let `sizes` {begin}"),
+        _ => format!("let `sizes` {end}"),
+    }
+}
+
 /// Shares of diameters, each in the class that it falls into.
 fn by_class(table: &TableReader<'_>, grid: &SizeGrid) -> Option<Vec<f64>> {
     let mut shares = vec![0.0; grid.classes()];
@@ -81,7 +94,11 @@ fn by_class(table: &TableReader<'_>, grid: &SizeGrid) -> Option<Vec<f64>> {
                 shown(from),
                 shown(to)
             );
-            table.fail("classes", rule, "widen `sizes`, or leave it out");
+            let help = match d >= 0.0 {
+                true => format!("{}, or leave it out", holding(grid, d, d)),
+                false => "diameters are zero or above".into(),
+            };
+            table.fail("classes", rule, help);
             return None;
         }
         if share < 0.0 {
@@ -121,7 +138,11 @@ fn by_passing(table: &TableReader<'_>, grid: &SizeGrid) -> Option<Vec<f64>> {
             shown(from),
             shown(to)
         );
-        table.fail("passing", rule, "widen `sizes`");
+        let help = match first.0 >= 0.0 {
+            true => holding(grid, first.0, last.0),
+            false => "diameters are zero or above".into(),
+        };
+        table.fail("passing", rule, help);
         return None;
     }
     let below = |d: f64| {

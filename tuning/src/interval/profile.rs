@@ -14,7 +14,7 @@ const EXACT: f64 = 2e-3;
 pub struct IntervalEnd {
     /// Place of the end.
     pub place: f64,
-    /// True: the data do not end the interval, the bound does.
+    /// True: the data do not end the interval; the bound does, or what lies beyond cannot be evaluated.
     pub at_bound: bool,
 }
 
@@ -95,11 +95,15 @@ struct Ray<'a> {
 }
 
 impl Ray<'_> {
-    /// Rise of the deviance at a place, from a fit of the others that starts at places.
+    /// Rise of the deviance at a place, from a fit of the others that starts at places; infinite where that cannot be evaluated.
     fn rise(&mut self, place: f64, from: &[f64]) -> Result<(f64, Vec<f64>), TuningError> {
         let mut choice = self.choice.clone();
         choice.fixed.push((self.parameter, place));
-        let fitted = fit(self.problem, from, &choice)?;
+        let fitted = match fit(self.problem, from, &choice) {
+            Ok(fitted) => fitted,
+            Err(TuningError::Interrupted) => return Err(TuningError::Interrupted),
+            Err(_) => return Ok((f64::INFINITY, from.to_vec())),
+        };
         let rise = fitted.deviance() - self.least;
         self.points.push((place, rise));
         Ok((rise, fitted.places))
@@ -134,7 +138,10 @@ impl Ray<'_> {
         for _ in 0..REFINE_STEPS {
             // The rise is a parabola about the best place.
             let root = |rise: f64| rise.max(0.0).sqrt();
-            let share = (root(self.threshold) - root(below)) / (root(above) - root(below));
+            let share = match above.is_finite() {
+                true => (root(self.threshold) - root(below)) / (root(above) - root(below)),
+                false => 0.5,
+            };
             let place = inside + share.clamp(0.1, 0.9) * (outside - inside);
             let (rise, places) = self.rise(place, &from)?;
             if rise > self.threshold {
@@ -149,9 +156,15 @@ impl Ray<'_> {
                 });
             }
         }
-        Ok(IntervalEnd {
-            place: 0.5 * (inside + outside),
-            at_bound: false,
+        Ok(match above.is_finite() {
+            true => IntervalEnd {
+                place: 0.5 * (inside + outside),
+                at_bound: false,
+            },
+            false => IntervalEnd {
+                place: inside,
+                at_bound: true,
+            },
         })
     }
 }

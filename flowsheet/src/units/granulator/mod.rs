@@ -319,7 +319,9 @@ impl ProcessUnit for Granulator {
                 rates[place] = feed[place] + gas[place] - leaves;
             }
         }
-        self.sizes.add(layout, view.state, &turnover, rates);
+        let births = self.sizes.births(layout, [feed, gas], &turnover);
+        self.sizes
+            .add(layout, view.state, &turnover, &births, rates);
         if let Some(kernel) = &self.bed_kernel {
             let masses = &view.state[..layout.solids()];
             let rates = &mut rates[..layout.solids()];
@@ -387,7 +389,12 @@ impl ProcessUnit for Granulator {
             let masses = &view.state[..view.layout.solids()];
             kernel.fastest(view.signal(0), view.layout.inner(), masses)
         });
-        kernel + turnover.product / mass + self.sizes.fastest(view.layout, view.state, &turnover)
+        let streams = [view.inlet(FEED), view.inlet(GAS)];
+        let births = self.sizes.births(view.layout, streams, &turnover);
+        let sizes = self
+            .sizes
+            .fastest(view.layout, view.state, &turnover, &births);
+        kernel + turnover.product / mass + sizes
     }
 
     fn invariants(&self) -> usize {
@@ -408,15 +415,11 @@ impl ProcessUnit for Granulator {
                     degree,
                 });
             }
-            let (from, to) = layout.grid().range();
-            return Err(PlantError::OutsideGrid {
-                place: format!(
-                    "granulator \"{}\" at {} s, last class",
-                    view.name, view.time
-                ),
+            return Err(PlantError::GrownBeyond {
+                place: format!("granulator \"{}\"", view.name),
+                time: view.time,
                 share: last,
-                from,
-                to,
+                to: layout.grid().range().1,
             });
         }
         Ok(())

@@ -147,9 +147,10 @@ impl BedSizes {
         layout: &StreamLayout,
         state: &[f64],
         turnover: &Turnover,
+        births: &[f64],
         rates: &mut [f64],
     ) {
-        self.grow(layout, state, turnover, rates);
+        self.grow(layout, state, turnover, births, rates);
         if self.wear > 0.0 {
             let inner = layout.inner();
             self.each_shrinking(layout, state, |class, flux, masses| {
@@ -219,29 +220,84 @@ impl BedSizes {
         }
     }
 
+    /// Particles that come into each class in 1/s: fed by streams, and the dust that returns as nuclei.
+    pub(super) fn births(
+        &self,
+        layout: &StreamLayout,
+        streams: [&[f64]; 2],
+        turnover: &Turnover,
+    ) -> Vec<f64> {
+        let mut births = self.numbers(layout, &streams[0][..layout.solids()]);
+        // Gas seldom carries solids.
+        if streams[1][..layout.solids()]
+            .iter()
+            .any(|flow| *flow != 0.0)
+        {
+            let carried = self.numbers(layout, &streams[1][..layout.solids()]);
+            births.iter_mut().zip(carried).for_each(|(b, c)| *b += c);
+        }
+        if self.overspray.returned > 0.0 {
+            let lost = turnover.dust.iter().sum::<f64>() + turnover.worn.iter().sum::<f64>();
+            let nuclei = self.overspray.returned * lost;
+            for ((birth, share), m) in births
+                .iter_mut()
+                .zip(&self.overspray.sizes)
+                .zip(&self.particle)
+            {
+                *birth += nuclei * share / m;
+            }
+        }
+        births
+    }
+
     /// Number density times relative growth at the face above each class but the last, and what passes there gains per
     /// unit of growth, in kg/m.
-    fn faces(&self, fluxes: &SizeFluxes, numbers: &[f64]) -> (Vec<f64>, f64) {
-        let mut faces = vec![0.0; numbers.len() - 1];
-        fluxes.growing(numbers, &mut faces);
+    fn faces(
+        &self,
+        fluxes: &SizeFluxes,
+        numbers: &[f64],
+        turnover: &Turnover,
+        births: &[f64],
+    ) -> (Vec<f64>, f64) {
+        let faces = numbers.len() - 1;
+        let gains = || self.growth.iter().zip(self.particle.windows(2));
+        // The speed of growth to first order, which does for the share of births within a class.
+        let densities = fluxes.densities(numbers);
+        let plain: f64 = densities
+            .iter()
+            .zip(gains())
+            .map(|(n, (g, pair))| n * g * (pair[1] - pair[0]))
+            .sum();
+        let mut rises = vec![0.0; numbers.len()];
+        if turnover.deposited > 0.0 {
+            for ((rise, birth), g) in rises.iter_mut().zip(births).zip(&self.growth) {
+                let growth = turnover.deposited / plain * g;
+                *rise = if growth > 0.0 { birth / growth } else { 0.0 };
+            }
+        }
+        let mut found = vec![0.0; faces];
+        fluxes.growing(numbers, &rises, &mut found);
         let mut gain = 0.0;
-        for ((face, g), pair) in faces
-            .iter_mut()
-            .zip(&self.growth)
-            .zip(self.particle.windows(2))
-        {
+        for (face, (g, pair)) in found.iter_mut().zip(gains()) {
             *face *= g;
             gain += *face * (pair[1] - pair[0]);
         }
-        (faces, gain)
+        (found, gain)
     }
 
     /// A bound of how fast small deviations between classes fade, in 1/s.
-    pub(super) fn fastest(&self, layout: &StreamLayout, state: &[f64], turnover: &Turnover) -> f64 {
+    pub(super) fn fastest(
+        &self,
+        layout: &StreamLayout,
+        state: &[f64],
+        turnover: &Turnover,
+        births: &[f64],
+    ) -> f64 {
         let Some(fluxes) = &self.fluxes else {
             return 0.0;
         };
-        let (_, gain) = self.faces(fluxes, &self.numbers(layout, state));
+        let numbers = self.numbers(layout, state);
+        let (_, gain) = self.faces(fluxes, &numbers, turnover, births);
         let speed = if turnover.deposited == 0.0 {
             0.0
         } else {
@@ -257,7 +313,14 @@ impl BedSizes {
     }
 
     /// Adds growth: number passes from class to class, and the spray's mass with it.
-    fn grow(&self, layout: &StreamLayout, state: &[f64], turnover: &Turnover, rates: &mut [f64]) {
+    fn grow(
+        &self,
+        layout: &StreamLayout,
+        state: &[f64],
+        turnover: &Turnover,
+        births: &[f64],
+        rates: &mut [f64],
+    ) {
         let Some(fluxes) = &self.fluxes else { return };
         if turnover.deposited == 0.0 {
             return;
@@ -283,7 +346,7 @@ impl BedSizes {
             }
             return;
         }
-        let (faces, gain) = self.faces(fluxes, &numbers);
+        let (faces, gain) = self.faces(fluxes, &numbers, turnover, births);
         let speed = turnover.deposited / gain;
         let gained = |class: usize| self.particle[class + 1] - self.particle[class];
         if inner == 1 {
