@@ -95,11 +95,6 @@ fn errors_on_tetrahedra_that_lean_are_those_of_the_native_gas() {
 }
 
 #[test]
-fn tetrahedra_that_lean_by_60_degrees_converge() {
-    converges(60.0, CellShape::Tetrahedra(0.0), &[6, 9], 1.2);
-}
-
-#[test]
 fn polyhedra_that_lean_by_45_degrees_converge() {
     converges(45.0, CellShape::Polyhedra(0.0), &[9, 12], 1.2);
 }
