@@ -153,6 +153,9 @@ fn air_in_a_closed_box_heated_by_its_floor_rises_in_pressure() {
     ] {
         agree_on(&cases::heated_box(side, convection), &CLOSE);
     }
+    let limited = cases::heated_box("no-slip", "central");
+    let limited = limited.replace("\"central\"", "{ limited_linear = 1 }");
+    agree_on(&limited, &CLOSE);
 }
 
 #[test]

@@ -59,6 +59,7 @@ mod second_model;
 mod self_heating;
 mod shipped_cases;
 mod simulation;
+mod sphere_arrays;
 mod stock_solver;
 mod stopped;
 mod support;

@@ -6,6 +6,7 @@
 mod conformance;
 mod last_words;
 mod liggghts_moving;
+mod liggghts_periodic;
 mod liggghts_ranks;
 mod liggghts_support;
 mod manufactured;

@@ -81,6 +81,19 @@ fn tetrahedra_that_lean_by_up_to_45_degrees_have_second_order() {
     }
 }
 
+/// Of the native gas on the same cells (kind agreement; `native-solver/tests/manufactured.rs`).
+#[test]
+fn errors_on_tetrahedra_that_lean_are_those_of_the_native_gas() {
+    let found = errors(&ManufacturedCase::new(45.0, CellShape::Tetrahedra(0.0)), 6);
+    for (own, native) in [
+        (found.velocity, 0.096_839_9),
+        (found.temperature, 1.132_931_5),
+        (found.pressure, 0.156_661_8),
+    ] {
+        assert!((own / native - 1.0).abs() < 1e-4, "{found:?}");
+    }
+}
+
 #[test]
 fn polyhedra_that_lean_by_45_degrees_converge() {
     converges(45.0, CellShape::Polyhedra(0.0), &[9, 12], 1.2);

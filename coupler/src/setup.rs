@@ -110,6 +110,9 @@ pub enum Convection {
     /// Velocity and enthalpy by linear interpolation to this share, by upwind for the rest: second order at a share of one,
     /// not bounded. Mass fractions by van Leer's limiter, which bounds them.
     Central(f64),
+    /// Velocity and enthalpy by linear interpolation limited with a coefficient k in [0, 1], OpenFOAM's `limitedLinear`:
+    /// ψ = max(0, min(2 r/k, 1)), bounded at k = 1, linear wherever r > 0 at k = 0. Mass fractions by van Leer's limiter.
+    LimitedLinear(f64),
 }
 
 /// A composition over process time: (time in s, mass fractions in the order of the mixture's

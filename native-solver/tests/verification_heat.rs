@@ -50,6 +50,7 @@ fn advection_error(cells: usize, convection: Convection) -> f64 {
 fn advection_with_diffusion_converges_with_second_order_by_van_leer_and_first_by_upwind() {
     for (convection, order, close) in [
         (Convection::VanLeer, 2.0, 0.1),
+        (Convection::LimitedLinear(1.0), 2.0, 0.1),
         (Convection::Upwind, 1.0, 0.1),
     ] {
         let errors = [40, 80, 160, 320].map(|cells| advection_error(cells, convection));
@@ -57,6 +58,44 @@ fn advection_with_diffusion_converges_with_second_order_by_van_leer_and_first_by
         println!("{convection:?}: errors {errors:?} K, orders {found:?}");
         assert!((found[2] - order).abs() < close, "{convection:?} {found:?}");
     }
+}
+
+/// Lowest and highest temperature in K at any time of a front of 400 K that pushes 300 K out of a duct, its conduction small.
+fn front(convection: Convection) -> (f64, f64) {
+    let mesh = duct([0.1, 0.1, 1.0], [1, 1, 40]);
+    let mut setup = setup(&[
+        ("bottom", holding_inlet(0.5, 400.0)),
+        ("top", outlet()),
+        ("side", slip()),
+    ]);
+    setup.properties = fluid(2.0, 500.0, 1e-3, 1e-6);
+    setup.controls.convection = convection;
+    setup.controls.outer_iterations = 200;
+    setup.controls.outer_tolerance = 1e-10;
+    let mut driver = Driver::new(&mesh, &setup);
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for _ in 0..60 {
+        driver.window(0.02, 1.0);
+        for temperature in driver.gas.fields().temperature {
+            (lowest, highest) = (lowest.min(*temperature), highest.max(*temperature));
+        }
+    }
+    (lowest, highest)
+}
+
+#[test]
+fn a_front_makes_no_new_extrema_by_van_leer_and_limited_linear_and_does_by_central() {
+    for convection in [Convection::VanLeer, Convection::LimitedLinear(1.0)] {
+        let (lowest, highest) = front(convection);
+        println!("{convection:?}: {lowest} to {highest} K");
+        assert!(
+            lowest > 300.0 - 1e-6 && highest < 400.0 + 1e-6,
+            "{convection:?}: {lowest} to {highest} K"
+        );
+    }
+    let (lowest, highest) = front(Convection::Central(1.0));
+    println!("central: {lowest} to {highest} K");
+    assert!(lowest < 299.0 || highest > 401.0, "{lowest} to {highest}");
 }
 
 /// Error in K at t = 1 s of a box heated by a source A(T − 300)-shaped as the first mode between

@@ -23,7 +23,7 @@ const fn whole(name: &'static str) -> Compared {
 
 /// Shortened: the furnace as far as two of the means over 240 s that its pressure drop is compared by, of 3400 s; it goes on to
 /// 600 s in `shaft-flames`.
-const CASES: [Compared; 12] = [
+const CASES: [Compared; 13] = [
     whole("lime-burning"),
     whole("calcining-stone"),
     whole("ore-reduction"),
@@ -33,6 +33,7 @@ const CASES: [Compared; 12] = [
     whole("settled-bed"),
     whole("rotating-drum"),
     whole("hopper"),
+    whole("chute"),
     whole("moving-bed"),
     whole("fluidised-bed"),
     Compared {

@@ -84,6 +84,7 @@ const ALL: &[(&str, fn())] = &[
     ("shaft-flames", shaft_flames::run),
     ("shaft-furnace", shaft_furnace::run),
     ("skewed-cavity", skewed_cavity::run),
+    ("skewed-cavity-1000", skewed_cavity::run_faster),
     ("skewed-meshes", skewed_meshes::run),
     ("spouted-bed", spouted_bed::run),
     ("square-cylinder", square_cylinder::run),

@@ -56,7 +56,7 @@ usage: cargo xtask TASK
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, elastic-box, external-restarts, flame,
                           fluidised-bed, hopper, load, moving-bed, repose, restarts, shaft-choices, shaft-flames,
-                          shaft-furnace, skewed-cavity, skewed-meshes, spouted-bed,
+                          shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, spouted-bed,
                           square-cylinder, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.

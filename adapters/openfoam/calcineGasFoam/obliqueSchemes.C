@@ -10,11 +10,16 @@
 //
 // t the parts along the face of the ways from the owner's centre to the face's and on to the neighbour's, d those along the normal; on the
 // boundary where a value is given, with P's half alone.
+//
+// `calcineLinear`: linear interpolation to the centre of the face, beyond that to where the line between the centres meets it by the gradients
+// of fvSchemes on both sides. OpenFOAM's `skewCorrected linear` takes Gauss' gradients, which are not exact for linear fields on tetrahedra.
 #include "obliqueSchemes.H"
 #include "emptyPolyPatch.H"
 #include "extrapolatedCalculatedFvPatchField.H"
 #include "gaussGrad.H"
 #include "gradScheme.H"
+#include "linear.H"
+#include "skewCorrectionVectors.H"
 #include "snGradScheme.H"
 #include "surfaceFields.H"
 #include "volFields.H"
@@ -75,6 +80,19 @@ public:
         const GeometricField<Type, fvPatchField, volMesh>& field
     ) const;
 };
+
+
+// The gradient of a field as fvSchemes has it.
+template<class Type>
+tmp<GeometricField<typename outerProduct<vector, Type>::type, fvPatchField, volMesh>> gradientOf
+(
+    const GeometricField<Type, fvPatchField, volMesh>& field
+)
+{
+    const word name("grad(" + field.name() + ')');
+    const fvMesh& mesh = field.mesh();
+    return gradScheme<Type>::New(mesh, mesh.gradScheme(name))().grad(field, name);
+}
 
 
 template<class Type>
@@ -184,8 +202,7 @@ tmp<GeometricField<Type, fvsPatchField, surfaceMesh>> calcineSnGrad<Type>::corre
 {
     typedef typename outerProduct<vector, Type>::type GradType;
     const fvMesh& mesh = this->mesh();
-    const word name("grad(" + field.name() + ')');
-    const auto kept = gradScheme<Type>::New(mesh, mesh.gradScheme(name))().grad(field, name);
+    const auto kept = gradientOf(field);
     const GeometricField<GradType, fvPatchField, volMesh>& gradient = kept();
     auto made = tmp<GeometricField<Type, fvsPatchField, surfaceMesh>>::New
     (
@@ -244,6 +261,53 @@ tmp<GeometricField<Type, fvsPatchField, surfaceMesh>> calcineSnGrad<Type>::corre
 }
 
 } // End namespace fv
+
+
+template<class Type>
+class calcineLinear
+:
+    public surfaceInterpolationScheme<Type>
+{
+public:
+
+    TypeName("calcineLinear");
+
+    calcineLinear(const fvMesh& mesh, Istream&)
+    :
+        surfaceInterpolationScheme<Type>(mesh)
+    {}
+
+    calcineLinear(const fvMesh& mesh, const surfaceScalarField&, Istream&)
+    :
+        surfaceInterpolationScheme<Type>(mesh)
+    {}
+
+    tmp<surfaceScalarField> weights(const GeometricField<Type, fvPatchField, volMesh>&) const
+    {
+        return this->mesh().surfaceInterpolation::weights();
+    }
+
+    virtual bool corrected() const
+    {
+        return skewCorrectionVectors::New(this->mesh()).skew();
+    }
+
+    virtual tmp<GeometricField<Type, fvsPatchField, surfaceMesh>> correction
+    (
+        const GeometricField<Type, fvPatchField, volMesh>& field
+    ) const
+    {
+        const fvMesh& mesh = this->mesh();
+        typedef typename outerProduct<vector, Type>::type GradType;
+        // OpenFOAM has these ways without their dimension.
+        const auto ways = dimensionedScalar("m", dimLength, 1)*skewCorrectionVectors::New(mesh)();
+        return ways & linear<GradType>(mesh).interpolate(fv::gradientOf(field));
+    }
+};
+
+makeSurfaceInterpolationTypeScheme(calcineLinear, scalar)
+makeSurfaceInterpolationTypeScheme(calcineLinear, vector)
+
 } // End namespace Foam
 
 makeFvGradTypeScheme(calcineGrad, scalar)

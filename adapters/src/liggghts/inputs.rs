@@ -321,7 +321,6 @@ fn unwritable(path: &Path, error: std::io::Error) -> PartError {
 mod tests {
     use calcine_coupler::conformance::particles::soft_spheres;
     use calcine_coupler::motion::{Contacts, Wall, WallMotion, WallShape};
-    use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 
     use super::*;
 
@@ -400,7 +399,7 @@ mod tests {
 
     /// What LIGGGHTS does not have is refused before a process is started, not left out.
     #[test]
-    fn periodic_patches_and_walls_that_it_does_not_move_are_refused_with_the_remedy() {
+    fn walls_that_it_does_not_move_are_refused_with_the_remedy() {
         let wall = |motion| Wall {
             name: "lid".into(),
             material: 0,
@@ -409,13 +408,6 @@ mod tests {
                 normal: Vec3::z(),
             },
             motion,
-        };
-        let span = PeriodicSpan {
-            low: 0.0,
-            high: 0.1,
-        };
-        let along = Periodicity {
-            axes: [Some(span), None, None],
         };
         let direction = Vec3::z();
         let scheduled = WallMotion::Scheduled {
@@ -432,27 +424,21 @@ mod tests {
             mass: 1.0,
             damping: 0.0,
         };
-        let none = Periodicity::default();
-        for (periodicity, walls, words) in [
-            (along, vec![], ["LIGGGHTS' processes may end", "native"]),
+        for (walls, words) in [
             (
-                none,
                 vec![wall(scheduled)],
                 ["`moved` of the wall \"lid\"", "native particles"],
             ),
             (
-                none,
                 vec![wall(oscillating)],
                 ["`oscillating` of the wall \"lid\"", "native particles"],
             ),
             (
-                none,
                 vec![wall(servo)],
                 ["`servo` of the wall \"lid\"", "native particles"],
             ),
         ] {
             let contacts = Contacts {
-                periodicity,
                 walls,
                 material_of: vec![0, 0],
                 held: vec![false, false],

@@ -51,13 +51,6 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
         }
         ContactForce::Linear { .. } | ContactForce::HertzMindlin => {}
     }
-    if !contacts.periodicity.is_none() {
-        return Some(
-            "the domain has periodic patches, and LIGGGHTS' processes may end while particles cross them; move the particles \
-             natively (`--particles native`)"
-                .into(),
-        );
-    }
     let unknown = contacts
         .walls
         .iter()

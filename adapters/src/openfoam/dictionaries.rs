@@ -254,9 +254,14 @@ pub fn schemes(text: &str, convection: Convection) -> String {
         Convection::Upwind => return text.to_owned(),
         Convection::VanLeer => ["vanLeerV", "vanLeer", "vanLeer"].map(str::to_owned),
         Convection::Central(share) => {
-            let central = format!("fixedBlended {share} skewCorrected linear upwind");
+            let central = format!("fixedBlended {share} calcineLinear upwind");
             [central.clone(), central, "vanLeer".into()]
         }
+        Convection::LimitedLinear(k) => [
+            format!("limitedLinearV {k}"),
+            format!("limitedLinear {k}"),
+            "vanLeer".into(),
+        ],
     };
     [
         ("div(phi,U)     ", velocity),

@@ -177,14 +177,15 @@ const PATCH: &[Key] = &[
 ];
 
 #[rustfmt::skip]
-const CENTRAL: &[Key] = &[
-    key("central", Number(D::NONE, Between(0.0, 1.0)), Required, "Share of central differences; the rest is upwind.", "0.9"),
+const SCHEMES: &[Key] = &[
+    key("central", Number(D::NONE, Between(0.0, 1.0)), OneOf, "Share of central differences; the rest is upwind. Either this or `limited_linear`.", "0.9"),
+    key("limited_linear", Number(D::NONE, Between(0.0, 1.0)), OneOf, "Central differences limited with this coefficient, OpenFOAM's `limitedLinear`: bounded at 1, less limited below it. Either this or `central`.", "1"),
 ];
 
 #[rustfmt::skip]
 const CONTROLS: &[Key] = &[
     key("outer_iterations", Whole(1, 10_000), Default("20"), "Outer iterations per window at most.", "20"),
-    key("convection", Either(&Choice(words::<Convection>), &Table(CENTRAL)), Default("van-leer"), "How velocity, enthalpy and composition are carried to faces: second order with van Leer's limiter; first-order upwind; or central differences of velocity and enthalpy, which no limiter bounds, and of composition van Leer's limiter; `{ central = 0.9 }` mixes them with upwind.", "\"upwind\""),
+    key("convection", Either(&Choice(words::<Convection>), &Table(SCHEMES)), Default("van-leer"), "How velocity, enthalpy and composition are carried to faces: second order with van Leer's limiter; first-order upwind; or central differences of velocity and enthalpy, which no limiter bounds, and of composition van Leer's limiter; `{ central = 0.9 }` mixes them with upwind, `{ limited_linear = 1 }` limits them.", "\"upwind\""),
     key("time_scheme", Choice(words::<TimeScheme>), Default("euler"), "How velocity, enthalpy and composition are stepped over a window at an acceleration of 1: implicit Euler, first order; or two implicit stages, second order (SDIRK2). Implicit Euler under time splitting, where the gas reacts, and where particles give or take species.", "\"sdirk2\""),
     key("pressure_corrections", Whole(1, 10_000), Default("2"), "Pressure corrections per outer iteration.", "2"),
     key("most_pressure_corrections", Whole(1, 10_000), Default("16"), "Where at the pace of momentum and continuity so far `outer_iterations` would not reach `outer_tolerance`, the pressure corrections are doubled, up to this many; with that of `pressure_corrections` or less they stay as they are.", "16"),

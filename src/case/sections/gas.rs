@@ -299,15 +299,19 @@ fn initial(
     Some((temperature?, pressure?, Vec3::from(velocity), composition?))
 }
 
-/// A scheme by its name, or central differences with a share of upwind.
+/// A scheme by its name, or central differences with a share of upwind or with a limiter of a coefficient.
 fn convection(table: &TableReader<'_>) -> Option<Convection> {
     if !table.is_table("convection") {
         return table.choice("convection");
     }
-    let blended = table.table("convection")?;
-    let share = blended.number("central");
-    blended.finish();
-    share.map(Convection::Central)
+    let scheme = table.table("convection")?;
+    let kind = scheme.exactly_one();
+    let number = kind.and_then(|kind| scheme.number(kind));
+    scheme.finish();
+    number.map(|number| match kind {
+        Some("limited_linear") => Convection::LimitedLinear(number),
+        _ => Convection::Central(number),
+    })
 }
 
 /// Accuracy, with its defaults where the case says nothing.

@@ -14,6 +14,11 @@ use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
 use crate::case::words::Adiabatic;
 
+/// Conditions that name no other patch.
+const ALONE: [&str; 7] = [
+    "inlet", "outlet", "opening", "wall", "symmetry", "empty", "wedge",
+];
+
 /// Conditions of all patches, for a gas, turbulent or not; one of constant density cannot flow into a closed domain.
 pub(super) fn boundary(
     section: &TableReader<'_>,
@@ -53,8 +58,15 @@ pub(super) fn boundary(
                 complete = false;
             }
         }
+        // An entry that could not be read may be the one that names a patch as its partner.
+        let unknown_partner = known.iter().any(|name| {
+            let read = made.iter().any(|(other, _)| other == name);
+            let mut own = named.iter().filter(|(other, _)| other == name);
+            let alone = own.any(|(_, reader)| ALONE.iter().any(|kind| reader.has(kind)));
+            table.has_named(name) && !read && !alone
+        });
         for name in known {
-            let stated = named.iter().any(|(other, _)| other == name);
+            let stated = unknown_partner || named.iter().any(|(other, _)| other == name);
             if !stated && !made.iter().any(|(other, _)| other == name) {
                 table.missing_like(
                     name,

@@ -78,6 +78,8 @@ fn cuboid(section: &TableReader<'_>) -> Option<MeshSpec> {
     let grading = gradings(&cuboid, ["x", "y", "z"], cells);
     let refine = refinements(&cuboid);
     let patches = match cuboid.texts("patches") {
+        // What is there and is no list has been told.
+        None if cuboid.has("patches") => None,
         None => Some(PATCHES.map(String::from)),
         Some(names) => {
             let count = names.len();

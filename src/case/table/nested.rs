@@ -136,6 +136,11 @@ impl<'a> TableReader<'a> {
         found
     }
 
+    /// True where there is an entry of a name that the user chooses, whatever it holds.
+    pub fn has_named(&self, name: &str) -> bool {
+        self.table.contains_key(name)
+    }
+
     /// A table at a time of 0 s, or a list of [time, table] with increasing times in s.
     pub fn dated_tables(&self, key: &str) -> Option<Vec<(f64, TableReader<'a>)>> {
         let (declared, ()) = self.declared_as(key, |value| {
