@@ -172,6 +172,19 @@ fn tuned(found: &PlantTuningSummary) -> String {
         .collect();
     let head = ["key", "#value", "#interval", "#bounds"];
     let mut html = table(&head, &keys);
+    if let Some(failure) = &found.failure {
+        let (failed, trials) = (found.failed, found.trials);
+        let failure = escape(failure);
+        html.push_str(&format!(
+            "<p>{failed} of {trials} trials failed, one of them: {failure}</p>"
+        ));
+    }
+    if let Some(cause) = &found.not_sensitive {
+        let cause = escape(cause);
+        html.push_str(&format!(
+            "<p>No derivatives beside what was found: {cause}</p>"
+        ));
+    }
     let slopes: Vec<Vec<String>> = found
         .sensitivities
         .iter()
