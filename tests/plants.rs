@@ -315,7 +315,7 @@ fn both_methods_of_recycles_agree_within_a_millionth() {
     assert!(again.status.success(), "{}", said(&again));
 }
 
-/// The plant of every unit by windows at a tolerance of 1e-8.
+/// The plant of every unit by windows at a tolerance of 1e-8, with both accelerations.
 #[test]
 fn windows_agree_with_closed_recycles_on_every_unit() {
     let folder = tempfile::tempdir().unwrap();
@@ -350,9 +350,15 @@ fn windows_agree_with_closed_recycles_on_every_unit() {
         values.map(|one| one.value.unwrap()).collect::<Vec<f64>>()
     };
     let closed = of("monolithic", &["method.recycles=monolithic"]);
-    let found = of("waveform", &["method.recycles=waveform"]);
-    for (one, other) in found.iter().zip(&closed) {
-        assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
+    for acceleration in ["anderson", "wegstein"] {
+        let setting = format!("method.waveform.acceleration={acceleration}");
+        let found = of(acceleration, &["method.recycles=waveform", &setting]);
+        for (one, other) in found.iter().zip(&closed) {
+            assert!(
+                (one / other - 1.0).abs() < 1e-6,
+                "{acceleration}: {one} {other}"
+            );
+        }
     }
 }
 

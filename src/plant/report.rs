@@ -1,6 +1,7 @@
 //! The report of a plant: one self-contained HTML page made from a results folder.
 
 mod flowsheet;
+mod labels;
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +42,14 @@ pub fn write_plant_report(directory: &Path) -> Result<PathBuf, ResultsError> {
     page.section("Quantities of interest", "", &quantities(&summary));
     page.section(
         "Flowsheet",
-        "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows. Torn streams are broken.",
+        match summary.tears.is_empty() {
+            true => {
+                "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows."
+            }
+            false => {
+                "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows. Streams at which recycles are torn are dashed."
+            }
+        },
         &flowsheet::draw(&case, &series, &summary),
     );
     if let Some(found) = &summary.tuning {

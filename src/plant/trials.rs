@@ -165,11 +165,11 @@ impl TrialLog {
         if let Some(wrong) = kept.wrong {
             return Err(wrong);
         }
-        let failed = kept.known.values().filter_map(|trial| trial.as_ref().err());
+        let mut failed = kept.known.values().filter_map(|trial| trial.as_ref().err());
         Ok(TrialCount {
             tried: kept.known.len(),
             failed: failed.clone().count(),
-            failure: failed.cloned().next(),
+            failure: failed.next().cloned(),
         })
     }
 }
