@@ -9,6 +9,7 @@ mod architecture;
 mod beds;
 mod burn_out;
 mod case_files;
+mod changed_files;
 mod check_and_run;
 mod command_line;
 mod conform;

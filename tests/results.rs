@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use calcine::results::read::Series;
+use calcine::results::summary::RunFailure;
 use calcine::results::{Recorder, ResultsError, Summary, Verdict};
 use calcine_coupler::observer::Observer;
 
@@ -388,6 +389,20 @@ fn a_full_disk_ends_in_an_error_that_names_the_file() {
         text.contains("gas/gas_0001.vtu") && text.contains("No space left"),
         "{text}"
     );
+    // Nothing of the file is left to take up room, and who watches the run is told of its end with no room at all.
+    assert!(fs::symlink_metadata(out.join("gas/gas_0001.vtu.new")).is_err());
+    for name in ["summary.json.new", "status.json.new"] {
+        std::os::unix::fs::symlink("/dev/full", out.join(name)).unwrap();
+    }
+    let failure = RunFailure {
+        code: 1,
+        message: text,
+    };
+    let error = recorder.stopped(Some(failure)).unwrap_err().to_string();
+    assert!(error.contains("summary.json"), "{error}");
+    let status = fs::read_to_string(out.join("status.json")).unwrap();
+    let status: serde_json::Value = serde_json::from_str(&status).unwrap();
+    assert_eq!(status["state"], "stopped");
 }
 
 #[test]

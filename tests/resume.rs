@@ -80,9 +80,25 @@ fn a_run_killed_before_its_first_checkpoint_starts_again_and_a_finished_one_does
     let text = String::from_utf8_lossy(&other.stderr).into_owned();
     assert_eq!(other.status.code(), Some(2), "{text}");
     assert!(text.contains("this case has"), "{text}");
+    // One that was interrupted left a checkpoint: where that is gone, nothing of its results is thrown away.
+    let stopped = verdict.replacen("\"running\"", "\"stopped\"", 1);
+    fs::write(out.join("summary.json"), &stopped).unwrap();
+    let refused = native(&out, "1.9 s").arg("--resume").output().unwrap();
+    let text = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{text}");
+    assert!(text.contains("whose checkpoints are gone"), "{text}");
+    assert_eq!(
+        fs::read_to_string(out.join("summary.json")).unwrap(),
+        stopped
+    );
+    fs::write(out.join("summary.json"), &verdict).unwrap();
     let resumed = native(&out, "1.9 s").arg("--resume").output().unwrap();
     let text = String::from_utf8_lossy(&resumed.stderr).into_owned();
     assert!(resumed.status.success(), "{text}");
+    assert!(
+        text.contains("the run begins again from its start"),
+        "{text}"
+    );
     assert_eq!(results_equal::differences(&whole, &out), [""; 0]);
 
     // Where no run ever began there is nothing to go on from.

@@ -1,8 +1,9 @@
 //! What of a case is told: inputs with the message that refuses them or warns of them, `tests/inputs/told.toml`. Each is a case that is in
-//! order but for what `set`, a file of particles (`bed`), a file of triangles (`wall`) or another text changes.
+//! order but for what `set`, a file of particles (`bed`), a file of triangles (`wall`) or a `template` changes.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -24,6 +25,12 @@ struct Told {
     bed: Option<String>,
     /// `wall.stl`, a wall more.
     wall: Option<String>,
+    /// Files of a template for OpenFOAM.
+    #[serde(default)]
+    template: BTreeMap<String, String>,
+    /// Messages that refuse it beside `refused`, all at once.
+    #[serde(default)]
+    refused_too: Vec<String>,
     /// What the message that refuses it begins with, a path before it left out.
     refused: Option<String>,
     /// What a warning begins with; empty: there is none.
@@ -65,6 +72,14 @@ fn every_input_is_told_in_its_words() {
             fs::write(folder.path().join("wall.stl"), wall).unwrap();
             text += "\n[[walls]]\nname = \"surface\"\nmaterial = \"glass\"\nstl = \"wall.stl\"\n";
         }
+        for (name, text) in &one.template {
+            let file = folder.path().join("template").join(name);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, text).unwrap();
+        }
+        if !one.template.is_empty() {
+            text += "\n[openfoam]\ntemplate = \"template\"\n";
+        }
         let path = folder.path().join("case.toml");
         fs::write(&path, text).unwrap();
         let found = match ValidCase::open(&path, &set) {
@@ -77,7 +92,10 @@ fn every_input_is_told_in_its_words() {
             message.starts_with(words.as_str())
         };
         let as_wanted = match (&one.refused, &one.warned) {
-            (Some(words), None) => found.0 && found.1.iter().any(|told| begins(told, words)),
+            (Some(words), None) => {
+                let told = |words: &String| found.1.iter().any(|told| begins(told, words));
+                found.0 && told(words) && one.refused_too.iter().all(told)
+            }
             (None, Some(words)) if words.is_empty() => !found.0 && found.1.is_empty(),
             (None, Some(words)) => !found.0 && found.1.iter().any(|told| begins(told, words)),
             _ => panic!("input {number} states not exactly one of `refused` and `warned`"),

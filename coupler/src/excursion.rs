@@ -52,6 +52,13 @@ impl Excursion {
         self.count = count;
     }
 
+    /// Keeps the worst value of both, and the larger of both numbers: of values looked at again and again, the most at once.
+    pub fn keep_worst(&mut self, other: &Self) {
+        let count = self.count.max(other.count);
+        self.add(other);
+        self.count = count;
+    }
+
     /// How far outside the worst value is.
     fn distance(&self) -> f64 {
         (self.value - self.limit).abs()

@@ -32,6 +32,8 @@ pub enum FindingKind {
     MassTransferReynolds,
     /// Particles that left the mesh and were taken out.
     LostParticles,
+    /// Contacts pressed in so far that their law is no contact of bodies any more.
+    DeepContacts,
     /// Gas comes back in through an outlet, in the state of the cell behind.
     Backflow,
     /// The gas' outer loop ended at its limit.
@@ -50,7 +52,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::GasTemperature,
         Self::MassFraction,
         Self::MachNumber,
@@ -63,6 +65,7 @@ impl FindingKind {
         Self::MassTransferVoidFraction,
         Self::MassTransferReynolds,
         Self::LostParticles,
+        Self::DeepContacts,
         Self::Backflow,
         Self::GasIterations,
         Self::TurbulenceSolver,
@@ -127,6 +130,13 @@ impl FindingKind {
                 "particles left the gas mesh and were taken out (motion.lost): no wall closes it there, a wall has a hole, or the \
                  step is too long for the contacts, see walls, step and overlap in `calcine check`; speed",
                 "m/s",
+            ],
+            Self::DeepContacts => [
+                "deep_contacts",
+                "particles pressed into walls or each other farther than contact laws hold: raise `young` of their material (spring \
+                 stiffnesses where the case states them) before they go through, see overlap and step in `calcine check`; overlap \
+                 over the smaller radius",
+                "1",
             ],
             Self::Backflow => [
                 "backflow",

@@ -10,6 +10,7 @@ use calcine_physics::{Vec3, sphere};
 
 use crate::boundary_value::BoundaryValue;
 use crate::error::PartError;
+use crate::excursion::Excursion;
 use crate::motion::ParticleChanges;
 use crate::named_columns::NamedColumns;
 use crate::supervisor::Supervisor;
@@ -407,6 +408,11 @@ pub const GAS_VELOCITY: &str = "gas_velocity";
 /// is held its support takes it up.
 pub const DRAG_IMPULSE: &str = "drag_impulse";
 
+/// Overlap of two surfaces over the radius of the smaller particle above which it is told of. Springs that are softened for longer
+/// steps come to a tenth in impacts. At a fifth the contact of two equal spheres has 0.32 of their radius by Hertz, whose theory takes
+/// it as small, and 1.5 % of a sphere's volume lies in each of its contacts.
+pub const DEEP_CONTACT: f64 = 0.2;
+
 /// What the particles report of a window, in the order of the push, of one real particle each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleReceived {
@@ -418,6 +424,10 @@ pub struct ParticleReceived {
     /// Impulse in N s that walls and held particles gave all free ones together; `None` where it is not
     /// counted.
     pub support: Option<Vec3>,
+    /// Contacts that were pressed in by more than [`DEEP_CONTACT`], by rows: the most in one step of the window, and the
+    /// deepest of all, over the radius of the smaller particle; `None` where the solver does not look, and the coordinator
+    /// looks at the end of the window.
+    pub deep_contacts: Option<Excursion>,
     /// Further columns, as the solver has some.
     pub columns: NamedColumns,
 }

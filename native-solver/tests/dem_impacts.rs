@@ -9,7 +9,8 @@
 
 use std::f64::consts::PI;
 
-use calcine_coupler::motion::{ContactForce, Contacts};
+use calcine_coupler::motion::{ContactForce, Contacts, Rolling};
+use calcine_coupler::part::DEEP_CONTACT;
 use calcine_coupler::physics::Vec3;
 
 use crate::grains::*;
@@ -466,5 +467,64 @@ fn compare(impact: &Impact, at: f64, spins: bool, slides: bool) {
     for (found, expected) in impact.native_impulse(spins).into_iter().zip(expected) {
         let off = (found - expected) / scale;
         assert!(off.abs() < 1e-3, "{at}, {spins}: {off}");
+    }
+}
+
+/// Impacts that press in by 15 % and by 30 % of the smaller radius: of two spheres one by one (with rolling resistance) and in
+/// lanes, and of a sphere on a plane.
+#[test]
+fn an_impact_deeper_than_a_fifth_of_the_smaller_radius_is_told_with_its_depth() {
+    for (other, rolls) in [
+        (Some(3e-3), false),
+        (Some(1e-3), false),
+        (Some(3e-3), true),
+        (None, false),
+    ] {
+        for share in [0.15, 0.3] {
+            let mut impact = Impact {
+                material: GLASS,
+                radius: 1e-3,
+                other,
+                restitution: 1.0,
+                friction: 0.0,
+                normal: 1.0,
+                slip: 0.0,
+                force: ContactForce::HertzMindlin,
+            };
+            // Depth grows with speed to the power 0.8.
+            impact.normal = (share * impact.radius / impact.depth()).powf(1.25);
+            let mut contacts = impact.contacts(1000.0);
+            if rolls {
+                contacts.law.rolling = Rolling::ConstantTorque;
+            }
+            let mut one = sphere(
+                1,
+                Vec3::z() * impact.radius,
+                Vec3::z() * -impact.normal,
+                impact.radius,
+            );
+            one.density = GLASS.density;
+            let mut spheres = vec![one];
+            if let Some(radius) = other {
+                let mut second = sphere(2, Vec3::z() * -radius, Vec3::zeros(), radius);
+                second.density = GLASS.density;
+                spheres.push(second);
+            }
+            let mut bed = Bed::new(contacts, &spheres);
+            bed.run(1500);
+            let found = bed.received.deep_contacts.unwrap();
+            if share > DEEP_CONTACT {
+                assert_eq!(
+                    (found.count, found.place, found.limit),
+                    (1, 0, DEEP_CONTACT)
+                );
+                assert!((found.value / share - 1.0).abs() < 1e-4, "{found:?}");
+            } else {
+                assert_eq!(found.count, 0, "{found:?}");
+            }
+            // What was told of one window is not told of the next.
+            bed.run(10);
+            assert_eq!(bed.received.deep_contacts.unwrap().count, 0);
+        }
     }
 }

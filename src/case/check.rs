@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use calcine_adapters::openfoam::{chemistry, turbulence};
+use calcine_adapters::openfoam::{chemistry, template};
 use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::cylinder::outline;
@@ -284,7 +284,7 @@ fn honoured(text: &mut String, case: &Case, not_with_liggghts: Option<&str>) {
 /// What an OpenFOAM gas makes of the case, and what its template alone states.
 fn openfoam(case: &Case) -> String {
     let mut text = String::from("every key");
-    let mut stated = stated(case);
+    let mut stated = template::written(&case.gas);
     if let (Some(gas), GasModel::Mixture(mixture)) =
         (case.gas.chemistry.reacting(), &case.gas.properties)
     {
@@ -331,27 +331,6 @@ fn openfoam(case: &Case) -> String {
     text
 }
 
-/// Files of a template over which OpenFOAM's case is written, without those of reactions.
-fn stated(case: &Case) -> Vec<String> {
-    let always = [
-        "0/U",
-        "0/T",
-        "0/p",
-        "0/p_rgh",
-        "constant/g",
-        "constant/thermophysicalProperties",
-    ];
-    let eddies = turbulence::files(&case.gas, "").into_iter();
-    let eddies = eddies
-        .map(|file| file.0)
-        // A template's own options stay beside.
-        .filter(|name| *name != "constant/fvOptions");
-    let species = case.gas.properties.species().iter();
-    let species = species.map(|name| format!("0/{name}"));
-    let names = always.into_iter().chain(eddies).map(str::to_owned);
-    names.chain(species).collect()
-}
-
 /// Of particles whose temperature is prescribed, between what values.
 fn prescribed(population: &Population) -> Option<String> {
     let values = population.prescribed_temperature.as_ref()?.0.iter();
@@ -393,7 +372,12 @@ mod tests {
         ] {
             let path = template.path().join(name);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-            std::fs::write(path, "").unwrap();
+            let text = match name {
+                "constant/turbulenceProperties" => "simulationType laminar;\n",
+                "system/fvSchemes" => "gradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n",
+                _ => "",
+            };
+            std::fs::write(path, text).unwrap();
         }
         let added = |name: &str| {
             let text = openfoam(&good(name, template.path()));

@@ -12,6 +12,7 @@ mod flow_numbers;
 mod flow_time;
 mod impact;
 pub mod in_wall;
+mod input_files;
 pub mod keys;
 mod kind;
 mod located;
@@ -71,7 +72,6 @@ pub use schedules::breaks;
 use sha2::{Digest, Sha256};
 pub use step::settle;
 
-use calcine_coupler::motion::WallShape;
 use model::Case;
 use parse::{parse_as, text_of};
 
@@ -108,7 +108,8 @@ pub fn parse_with(
         laws,
         |root, effective, hash| sections::case(root, path, effective, hash),
     )?;
-    case.hash = with_files(&case);
+    case.files = input_files::sums(&case);
+    case.hash = input_files::extended(case.hash, &case.files);
     case.changes = changes;
     Ok(case)
 }
@@ -131,56 +132,6 @@ pub fn parse_tuning(path: &Path, text: &str, set: &[String]) -> Result<TuningCas
     for file in &case.files {
         digest.update(std::fs::read(file).unwrap_or_default());
     }
-    let bytes = digest.finalize();
-    case.hash = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    case.hash = input_files::hex(digest.finalize());
     Ok(case)
-}
-
-/// The hash extended by the contents of the files that the case names, so that a changed bed or
-/// mesh is not taken for the same case.
-fn with_files(case: &Case) -> String {
-    let places = case
-        .particles
-        .iter()
-        .filter_map(|population| match &population.place {
-            model::PlacementSpec::File { path, .. } => Some(path.clone()),
-            _ => None,
-        });
-    let mesh = match &case.mesh {
-        model::MeshSpec::PolyMesh(folder) => ["points", "faces", "owner", "neighbour", "boundary"]
-            .map(|name| folder.join(name))
-            .to_vec(),
-        model::MeshSpec::Box { .. } | model::MeshSpec::Cylinder { .. } => Vec::new(),
-    };
-    let files: Vec<_> = places
-        .chain(mesh)
-        .chain(case.gas_files.iter().cloned())
-        .collect();
-    let triangles: Vec<_> = case
-        .walls
-        .iter()
-        .filter_map(|wall| match &wall.shape {
-            WallShape::Mesh { triangles } => Some(triangles),
-            _ => None,
-        })
-        .collect();
-    if files.is_empty() && triangles.is_empty() {
-        return case.hash.clone();
-    }
-    let mut digest = Sha256::new();
-    digest.update(case.hash.as_bytes());
-    for file in files {
-        // A file that cannot be read is an error of the mesh or of the bed, told there.
-        digest.update(std::fs::read(file).unwrap_or_default());
-    }
-    for corner in triangles.into_iter().flatten().flatten() {
-        for value in corner.iter() {
-            digest.update(value.to_le_bytes());
-        }
-    }
-    digest
-        .finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
 }

@@ -7,6 +7,7 @@ mod mesh;
 mod particles;
 mod quantity;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -48,6 +49,9 @@ pub struct Case {
     pub hash: String,
     /// Effective TOML text, `--set` applied, as written next to the results.
     pub effective: String,
+    /// SHA-256 (hex) of what is in each file that the case reads, by its path as the case has it; of the triangles of a wall by
+    /// the wall's key.
+    pub files: BTreeMap<String, String>,
     /// What `--set` changed: key, new and old value.
     pub changes: Vec<String>,
     /// What of the case is likely not meant, or out of range before anything runs, in words; empty until mesh and particles

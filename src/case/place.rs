@@ -142,7 +142,8 @@ fn spheres(
                 *centre = periodicity.wrap(*centre);
             }
             for (number, centre) in (1..).zip(&centres) {
-                if let Some(what) = outside(&case.mesh, centre) {
+                if let Some(fact) = outside(&case.mesh, centre) {
+                    let what = format!("{fact}; {MOVE}");
                     let place = format!("population \"{}\", particle {number}", population.name);
                     return Err(PlaceError::File { place, what });
                 }
@@ -205,7 +206,11 @@ fn spheres(
             let mut made = Vec::with_capacity(entries.len());
             for (entry, drawn) in entries.into_iter().zip(diameters) {
                 let centre = periodicity.wrap(entry.centre);
-                if let Some(what) = outside(&case.mesh, &centre) {
+                if let Some(fact) = outside(&case.mesh, &centre) {
+                    let what = match in_millimetres(&case.mesh, &centre) {
+                        true => format!("{fact}; {MILLIMETRES}"),
+                        false => format!("{fact}; {MOVE}"),
+                    };
                     let place = format!("{}, {}", path.display(), entry.row);
                     return Err(PlaceError::File { place, what });
                 }
@@ -238,13 +243,24 @@ fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {
     centres
 }
 
+/// What to do about a particle outside the mesh.
+const MOVE: &str = "move the particle, or enlarge the mesh";
+
+/// What to do about a file whose lengths are likely in mm.
+const MILLIMETRES: &str =
+    "divide the lengths of the file by 1000 if they are in mm: they are read in m";
+
+/// True of a centre far outside a generated mesh that lies in it if its lengths are in mm.
+fn in_millimetres(mesh: &MeshSpec, centre: &Vec3) -> bool {
+    outside(mesh, &(0.1 * centre)).is_some() && outside(mesh, &(1e-3 * centre)).is_none()
+}
+
 /// What is wrong with a centre outside a generated mesh.
 fn outside(mesh: &MeshSpec, centre: &Vec3) -> Option<String> {
     let beyond = |name: &str, value: f64, low: f64, high: f64| {
         (!(low..=high).contains(&value)).then(|| {
             format!(
-                "the centre lies at {name} = {} m, but the mesh reaches from {} m to {} m; move the \
-                 particle, or enlarge the mesh",
+                "the centre lies at {name} = {} m, but the mesh reaches from {} m to {} m",
                 shown(value),
                 shown(low),
                 shown(high)

@@ -12,8 +12,9 @@ use super::units::short3;
 
 /// Diffusivities in m²/s that gases have, in pores as in the open.
 const DIFFUSIVITY: [f64; 2] = [1e-8, 1e-1];
-/// Heat capacity in J/kg/K below which no solid is at the temperatures of beds: that of lead is 129.
-const LEAST_HEAT_CAPACITY: f64 = 50.0;
+/// Heat capacities in J/kg/K between which all solids are at the temperatures of beds: that of lead is 129, of lithium 3580, of
+/// water 4190.
+const HEAT_CAPACITY: [f64; 2] = [50.0, 1e4];
 /// Densities in kg/m³ that particles have: from foams to osmium.
 const DENSITY: [f64; 2] = [10.0, 22_600.0];
 /// Largest order of a reaction that is likely meant.
@@ -132,30 +133,36 @@ fn densities(case: &Case) -> Vec<String> {
 }
 
 fn heat_capacities(case: &Case) -> Vec<String> {
-    let least = |law: &HeatCapacity| {
-        let (low, high) = law.range();
+    let ends = |(low, high): (f64, f64), at: &dyn Fn(f64) -> f64| {
         let high = if high.is_finite() { high } else { low };
-        law.at(low).min(law.at(high))
+        [at(low).min(at(high)), at(low).max(at(high))]
     };
     let materials = case.materials.iter();
     let materials = materials
         .filter(|one| one.composition.is_none())
-        .map(|one| (format!("materials.{}", one.name), least(&one.heat_capacity)));
+        .map(|one| {
+            let law: &HeatCapacity = &one.heat_capacity;
+            let ends = ends(law.range(), &|kelvin| law.at(kelvin));
+            (format!("materials.{}", one.name), ends)
+        });
     let solids = case.chemistry.solids.iter();
     let solids = solids
         .filter(|solid| case.materials.iter().all(|one| one.name != solid.name()))
         .map(|solid| {
-            let (low, high) = solid.range();
-            let high = if high.is_finite() { high } else { low };
-            let least = solid.heat_capacity(low).min(solid.heat_capacity(high));
-            (format!("solids.{}", solid.name()), least)
+            let ends = ends(solid.range(), &|kelvin| solid.heat_capacity(kelvin));
+            (format!("solids.{}", solid.name()), ends)
         });
-    let odd = materials
-        .chain(solids)
-        .filter(|(_, value)| *value < LEAST_HEAT_CAPACITY);
-    odd.map(|(key, value)| {
+    let odd = materials.chain(solids).filter_map(|(key, [least, most])| {
+        let value = if least < HEAT_CAPACITY[0] {
+            Some((least, "less"))
+        } else {
+            (most > HEAT_CAPACITY[1]).then_some((most, "more"))
+        };
+        value.map(|(value, than)| (key, value, than))
+    });
+    odd.map(|(key, value, than)| {
         format!(
-            "`{key}.heat_capacity` is {} J/kg/K, less than any solid has: check its unit, J/kg/K and not J/mol/K or kJ/kg/K",
+            "`{key}.heat_capacity` is {} J/kg/K, {than} than any solid has: check its unit, J/kg/K and not J/mol/K or kJ/kg/K",
             short3(value)
         )
     })
@@ -235,7 +242,12 @@ mod tests {
         told(
             "two-populations",
             "materials.glass.heat_capacity=0.84 J/kg/K",
-            "`materials.glass.heat_capacity` is 0.84 J/kg/K",
+            "`materials.glass.heat_capacity` is 0.84 J/kg/K, less",
+        );
+        told(
+            "two-populations",
+            "materials.glass.heat_capacity=840 kJ/kg/K",
+            "`materials.glass.heat_capacity` is 840000 J/kg/K, more",
         );
         told(
             "reactions",

@@ -139,7 +139,7 @@ fn over(case: &Case, out: &Path, summary: &Summary, strict: bool) -> Result<Done
             out.display(),
             summary.case.hash,
             case.hash,
-            difference(out, &case.effective)
+            difference(out, &case.effective, &case.files)
         );
         return Err(Failure::new(exit::CASE, message));
     }

@@ -1,5 +1,6 @@
 //! A plant's run from its case to its results folder.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -163,7 +164,7 @@ fn occupied(
             path: out.join(SUMMARY),
             stored: summary.case.hash,
             hash: case.hash.clone(),
-            keys: difference(out, &case.effective),
+            keys: difference(out, &case.effective, &BTreeMap::new()),
         }));
     }
     Ok(summary.is_complete().then_some(summary))
@@ -184,7 +185,7 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
                 path: out.join("checkpoint"),
                 stored: saved.case_hash,
                 hash: case.hash.clone(),
-                keys: difference(out, &case.effective),
+                keys: difference(out, &case.effective, &BTreeMap::new()),
             }));
         }
         let mut run = PlantRun::new(plant, integrator, tolerance)?;
@@ -404,6 +405,7 @@ impl Driven<'_> {
                 name: case.name.clone(),
                 title: case.title.clone(),
                 hash: case.hash.clone(),
+                files: BTreeMap::new(),
             },
             from: self.from.clone(),
             verdict,

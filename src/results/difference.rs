@@ -1,34 +1,30 @@
-//! In which keys the case of a run differs from the one that it is to go on with.
+//! In which keys and files the case of a run differs from the one that it is to go on with.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use toml_edit::{DocumentMut, Item, Value};
 
-use super::CASE;
+use super::{CASE, Summary};
 
 /// Most keys that are named.
 const MOST: usize = 5;
 
-/// The keys that differ between the case in a results folder and another one, with both values, as the end of a sentence;
-/// empty where they are not known.
-pub(crate) fn difference(results: &Path, effective: &str) -> String {
-    let stored = std::fs::read_to_string(results.join(CASE)).unwrap_or_default();
-    let (Some(there), Some(here)) = (flat(&stored), flat(effective)) else {
-        return String::new();
-    };
-    let mut keys: Vec<&String> = there.keys().chain(here.keys()).collect();
-    keys.sort();
-    keys.dedup();
-    let shown = |value: Option<&String>| value.map_or("nothing", String::as_str).to_owned();
-    let differ: Vec<String> = keys
-        .into_iter()
-        .filter(|key| there.get(*key) != here.get(*key))
-        .map(|key| {
-            let (old, new) = (shown(there.get(key)), shown(here.get(key)));
-            format!("`{key}` is {old} there and {new} here")
-        })
-        .collect();
+/// What differs between the case in a results folder and another one, as the end of a sentence: keys with both values, and files
+/// of the same name that hold something else; empty where it is not known.
+pub(crate) fn difference(
+    results: &Path,
+    effective: &str,
+    files: &BTreeMap<String, String>,
+) -> String {
+    let mut differ = keys(results, effective);
+    let there = Summary::read(results).map(|summary| summary.case.files);
+    let there = there.unwrap_or_default();
+    let changed = files.iter().filter(|&(name, sum)| {
+        let before = there.get(name);
+        before.is_some_and(|before| before != sum)
+    });
+    differ.extend(changed.map(|(name, _)| format!("`{name}` holds something else than it did")));
     match differ.len() {
         0 => String::new(),
         count if count > MOST => {
@@ -36,6 +32,25 @@ pub(crate) fn difference(results: &Path, effective: &str) -> String {
         }
         _ => format!(": {}", differ.join(", ")),
     }
+}
+
+/// The keys that differ, with both values.
+fn keys(results: &Path, effective: &str) -> Vec<String> {
+    let stored = std::fs::read_to_string(results.join(CASE)).unwrap_or_default();
+    let (Some(there), Some(here)) = (flat(&stored), flat(effective)) else {
+        return Vec::new();
+    };
+    let mut keys: Vec<&String> = there.keys().chain(here.keys()).collect();
+    keys.sort();
+    keys.dedup();
+    let shown = |value: Option<&String>| value.map_or("nothing", String::as_str).to_owned();
+    keys.into_iter()
+        .filter(|key| there.get(*key) != here.get(*key))
+        .map(|key| {
+            let (old, new) = (shown(there.get(key)), shown(here.get(key)));
+            format!("`{key}` is {old} there and {new} here")
+        })
+        .collect()
 }
 
 /// Values by their dotted keys; `None` where the text is no TOML.
@@ -84,14 +99,14 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let told = |there: &str, here: &str| {
             std::fs::write(folder.path().join(CASE), there).unwrap();
-            difference(folder.path(), here)
+            keys(folder.path(), here).join(", ")
         };
         let there = "[time]\nend = \"1 s\"\n[[particles]]\nname = \"a\"\nplace = { number = 3 }\n";
         assert_eq!(told(there, there), "");
         let here = there.replace("\"1 s\"", "\"2 s\"").replace('3', "4");
         assert_eq!(
             told(there, &here),
-            ": `particles[0].place.number` is 3 there and 4 here, `time.end` is \"1 s\" there and \"2 s\" here"
+            "`particles[0].place.number` is 3 there and 4 here, `time.end` is \"1 s\" there and \"2 s\" here"
         );
         assert_eq!(told("not toml", &here), "");
         assert_eq!(told("[time]\n", "[time]\nend = 1\n"), "");

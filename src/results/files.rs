@@ -55,16 +55,34 @@ pub(crate) fn replace(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
         file.write_all(content)?;
         file.flush()
     });
-    written.map_err(ResultsError::file("write", draft))?;
+    if let Err(error) = written {
+        // A disk that is full has room again for what tells of it.
+        let _ = fs::remove_file(draft);
+        return Err(ResultsError::file("write", draft)(error));
+    }
     fs::rename(draft, path).map_err(ResultsError::file("replace", path))
+}
+
+/// Writes over a small file in place, as the last resort on a disk without room: one that is there keeps its room.
+pub(super) fn write_over(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
+    let written = File::options().write(true).open(path).and_then(|mut file| {
+        file.write_all(content)?;
+        file.set_len(content.len() as u64)
+    });
+    written.map_err(ResultsError::file("write", path))
+}
+
+/// The text of a JSON file.
+pub(super) fn json(path: &Path, value: &impl Serialize) -> Result<String, ResultsError> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|error| ResultsError::content(path, error.to_string()))?;
+    text.push('\n');
+    Ok(text)
 }
 
 /// Replaces a JSON file at once.
 pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), ResultsError> {
-    let mut text = serde_json::to_string_pretty(value)
-        .map_err(|error| ResultsError::content(path, error.to_string()))?;
-    text.push('\n');
-    replace(path, text.as_bytes())
+    replace(path, json(path, value)?.as_bytes())
 }
 
 /// Creates a directory with its parents.

@@ -137,8 +137,9 @@ impl Recorder {
         summary.failure = failure;
         summary.verdict = Verdict::Stopped;
         let status = status_of(summary);
-        summary.replace(&self.directory)?;
-        self.watch.replace(status)
+        let summary = summary.replace(&self.directory);
+        self.watch.close(status)?;
+        summary
     }
 
     fn begin(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
@@ -488,6 +489,7 @@ impl Recorder {
                 name: case.name.clone(),
                 title: case.title.clone(),
                 hash: case.hash.clone(),
+                files: case.files.clone(),
             },
             from: self.counters.from.clone(),
             verdict,

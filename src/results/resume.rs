@@ -164,7 +164,7 @@ pub(super) fn restore(
             path,
             stored: counters.case_hash,
             hash: case.hash.clone(),
-            keys: difference(results, &case.effective),
+            keys: difference(results, &case.effective, &case.files),
         });
     }
     let count = counters.snapshots.len();
@@ -210,13 +210,15 @@ pub fn may_start_again(results: &Path, case: &Case) -> Result<bool, ResultsError
             path,
             stored: summary.case.hash,
             hash: case.hash.clone(),
-            keys: difference(results, &case.effective),
+            keys: difference(results, &case.effective, &case.files),
         });
     }
-    Ok(matches!(
-        summary.verdict,
-        Verdict::Running | Verdict::Stopped
-    ))
+    // One that was interrupted left a checkpoint, which is gone: what it computed is not thrown away.
+    Ok(match summary.verdict {
+        Verdict::Running => true,
+        Verdict::Stopped => summary.failure.is_some(),
+        _ => false,
+    })
 }
 
 /// Makes room for a run that begins again.

@@ -139,8 +139,11 @@ pub struct CaseName {
     pub name: String,
     /// Its title.
     pub title: String,
-    /// SHA-256 of its effective text.
+    /// SHA-256 of its effective text and of the files that it reads.
     pub hash: String,
+    /// SHA-256 of what is in each of these files; of the triangles of a wall by its key.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: BTreeMap<String, String>,
 }
 
 /// Another run, as it stood when this one continued from it.

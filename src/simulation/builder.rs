@@ -198,7 +198,13 @@ impl SimulationBuilder {
         let damage = origin.as_ref().and_then(|origin| origin.damage.as_ref());
         let older =
             damage.map(|what| format!("{what}; this run begins from the checkpoint before it"));
-        let notes: Vec<String> = recovered.into_iter().chain(older).collect();
+        let start = again.then(|| {
+            format!(
+                "there is no checkpoint in {}: the run begins again from its start",
+                out.display()
+            )
+        });
+        let notes: Vec<String> = recovered.into_iter().chain(older).chain(start).collect();
         let checkpoint = CheckpointPaths::new(&out).committed();
         let info = RunInfo {
             gas: self.pairing.gas.name().into(),

@@ -1,7 +1,7 @@
 //! Why a simulation cannot be begun, or cannot go on.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calcine_adapters::last_words;
 use calcine_coupler::coordinator::{Ending, RunError};
@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::assembly::AssemblyError;
 use crate::case::CaseErrors;
 use crate::exit;
-use crate::results::ResultsError;
+use crate::results::{ResultsError, SUMMARY};
 use crate::valid::InvalidCase;
 
 /// Why a simulation cannot be begun, or cannot go on; the words are those that `calcine run` prints.
@@ -46,7 +46,7 @@ pub enum SimulationError {
     },
     /// There is nothing to resume.
     #[error(
-        "there is no checkpoint in {folder}: run without `--resume`, or name the folder with `--out`"
+        "there is no checkpoint in {folder}: {}", elsewhere(.folder)
     )]
     NoCheckpoint {
         /// The results folder.
@@ -123,6 +123,17 @@ pub(crate) fn of_run(error: &RunError) -> Option<&'static str> {
         RunError::Part(part) => last_words::remedy(part),
         RunError::Reacting { cause, .. } => of_run(cause),
         _ => None,
+    }
+}
+
+/// What to do where a folder has no checkpoint.
+fn elsewhere(folder: &Path) -> &'static str {
+    match folder.join(SUMMARY).is_file() {
+        true => {
+            "it holds results of a run of this case, whose checkpoints are gone (`checkpoint`, `checkpoint.before`): copy them back, or \
+             remove the folder and run without `--resume`"
+        }
+        false => "run without `--resume`, or name the folder with `--out`",
     }
 }
 

@@ -13,6 +13,7 @@ mod case;
 #[cfg(feature = "hdf5")]
 mod checkpoint;
 mod curves;
+mod foam;
 mod mutate;
 mod parent;
 mod polymesh;
@@ -47,6 +48,7 @@ const TARGETS: &[&str] = &[
     "csv",
     "curves",
     "vtk",
+    "foam",
     "set",
     #[cfg(feature = "hdf5")]
     "checkpoint",
@@ -56,6 +58,7 @@ fn target(name: &str) -> Box<dyn Target> {
     match name {
         "case" => Box::new(case::CaseFiles::new()),
         "curves" => Box::new(curves::Curves::new()),
+        "foam" => Box::new(foam::Templates::new()),
         "set" => Box::new(set::Assignments::new()),
         "stl" | "csv" | "vtk" => Box::new(attached::AttachedFiles::new(name)),
         #[cfg(feature = "hdf5")]

@@ -57,6 +57,7 @@ pub fn case() -> Case {
         hash: "0123456789abcdef".repeat(4),
         warnings: Vec::new(),
         changes: Vec::new(),
+        files: Default::default(),
         effective: "format = 1\n".into(),
         time: TimeSpec {
             end: seconds(20.0),

@@ -16,6 +16,8 @@ use crate::{program, shipped};
 /// The seed of the faults.
 const SEED: u64 = 18_002;
 const FAULTS: u64 = 200;
+/// Draws of faults at most.
+const MOST: u64 = 3 * FAULTS;
 /// A watchdog: a run takes a second.
 const PATIENCE: Duration = Duration::from_secs(300);
 /// A checkpoint every few windows.
@@ -45,12 +47,17 @@ pub fn run() {
         println!("  without root no disk can be made to fill: those faults are kills in place");
     }
     let mut counts = std::collections::BTreeMap::<&str, [u32; 3]>::new();
-    for number in 0..FAULTS {
+    let mut met = 0;
+    // A run may be at its end before its fault: that one is drawn anew.
+    for number in 0..MOST {
+        if met == FAULTS {
+            break;
+        }
         let mut random = Random::of(SEED, number);
         let place = disk
             .as_ref()
             .map_or(folder.path(), |disk| disk.path.as_path());
-        let (kind, out) = match (number % 4, &disk) {
+        let (kind, out) = match (met % 4, &disk) {
             (0, Some(_)) => ("full disk", place.join("out")),
             (1, _) => ("changed or lost", folder.path().join("out")),
             (2, _) => ("cut short", folder.path().join("out")),
@@ -70,7 +77,11 @@ pub fn run() {
                     output.status
                 );
             }
-            ("killed", _) => kill_at(&out, length.mul_f64(share(&mut random)), &mut random),
+            ("killed", _) => {
+                if !kill_at(&out, length.mul_f64(share(&mut random)), &mut random) {
+                    continue;
+                }
+            }
             _ => {
                 let moment = length.mul_f64(share(&mut random));
                 let before = out.join("checkpoint.before");
@@ -91,6 +102,7 @@ pub fn run() {
         }
         let count = counts.entry(kind).or_default();
         count[0] += 1;
+        met += 1;
         if !out.join("lock").exists() {
             continue;
         }
@@ -106,6 +118,7 @@ pub fn run() {
     for (kind, [number, back, alike]) in &counts {
         println!("  | {kind} | {number} | {back} | {alike} |");
     }
+    assert_eq!(met, FAULTS, "of {MOST} draws");
     // What is damaged is noticed.
     for kind in ["changed or lost", "cut short"] {
         let [number, back, alike] = counts[kind];
@@ -113,8 +126,8 @@ pub fn run() {
     }
 }
 
-/// Kills a run after a time, once a checkpoint is being written.
-fn kill_at(out: &Path, moment: Duration, random: &mut Random) {
+/// Kills a run after a time, once a checkpoint is being written; false where it was at its end before.
+fn kill_at(out: &Path, moment: Duration, random: &mut Random) -> bool {
     let mut killed = command(out, &[]);
     killed.stdout(Stdio::null()).stderr(Stdio::null());
     let mut run = killed.spawn().unwrap();
@@ -122,8 +135,10 @@ fn kill_at(out: &Path, moment: Duration, random: &mut Random) {
     let part = out.join("checkpoint.part");
     wait(&mut run, || begun.elapsed() >= moment && part.exists());
     std::thread::sleep(Duration::from_micros(random.below(3000) as u64));
+    let going_on = run.try_wait().unwrap().is_none();
     let _ = run.kill();
     run.wait().unwrap();
+    going_on
 }
 
 fn wait(run: &mut Child, mut ready: impl FnMut() -> bool) {

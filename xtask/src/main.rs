@@ -45,7 +45,7 @@ usage: cargo xtask TASK
                           hot-duct, five-species
         [--no-build]      with the programs that were built last
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
-        [--seed S]        of case, polymesh, stl, csv, curves, vtk, set, checkpoint
+        [--seed S]        of case, polymesh, stl, csv, curves, vtk, foam, set, checkpoint
         [TARGET …]
   torture [--kills N]     kill runs at random moments, resume, compare every bit (default: 50)
         [--seed S]        the seed of the random numbers

@@ -4,12 +4,14 @@ pub mod case;
 pub mod chemistry;
 mod decompose;
 mod dictionaries;
+mod dictionary;
 mod foam_file;
 mod identity;
 mod names;
 mod species;
 mod start_fields;
 pub mod stock;
+pub mod template;
 pub mod turbulence;
 
 use std::ffi::OsString;

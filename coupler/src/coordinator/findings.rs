@@ -1,9 +1,10 @@
 //! Stage: what a window that is about to be committed leaves outside the range of a law, or unconverged.
 
 use super::CoupledRun;
+use crate::contacts;
 use crate::excursion::Excursion;
 use crate::findings::{Finding, FindingKind, FindingPlace};
-use crate::part::Gas as _;
+use crate::part::{DEEP_CONTACT, Gas as _};
 use calcine_interior::NetworkOutcome;
 
 /// Round-off of mass and void fractions.
@@ -64,6 +65,11 @@ impl CoupledRun {
             found.push(Finding::outside(voids, &flow.void_fraction, particle));
             found.push(Finding::outside(reynolds, &flow.reynolds, particle));
         }
+        found.push(Finding::outside(
+            FindingKind::DeepContacts,
+            &self.deep_contacts(),
+            particle,
+        ));
         found.push(self.parts.gas.backflow().map(|back| Finding {
             kind: FindingKind::Backflow,
             count: back.faces,
@@ -72,6 +78,29 @@ impl CoupledRun {
             place: cell(back.cell),
         }));
         found.into_iter().flatten().collect()
+    }
+
+    /// Contacts that are pressed in farther than their law holds, by rows: as the solver of the particles saw them in its
+    /// steps, or else those of two particles at the end of the window.
+    fn deep_contacts(&self) -> Excursion {
+        let mut found = Excursion::default();
+        let free = &self.motion.free;
+        if let Some(seen) = self.motion.received.deep_contacts {
+            return seen;
+        }
+        let particles = self.parts.particles.fields();
+        if particles.has_weights() || !free.contains(&true) {
+            return found;
+        }
+        let places = (particles.radius, particles.position);
+        for touch in contacts::touching(self.mesh.periodicity(), places.0, places.1, 0.0) {
+            let ([a, b], [one, other]) = (touch.particles, touch.radius);
+            if free[a] || free[b] {
+                let smaller = if other < one { b } else { a };
+                found.look(smaller, touch.overlap / one.min(other), (0.0, DEEP_CONTACT));
+            }
+        }
+        found
     }
 
     /// Cells whose gas is faster than the low-Mach form holds.

@@ -11,6 +11,7 @@ use super::meter::{Meter, Stage};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::closures::{CouplingCoefficients, DragInertia};
 use crate::exchange::Exchange;
+use crate::excursion::Excursion;
 use crate::ledger::Ledger;
 use crate::momentum_model::MomentumModel;
 use crate::part::{
@@ -191,6 +192,7 @@ impl MotionStage {
         self.received.impulse.clear();
         self.received.impulse.extend(impulses);
         (self.received.acted, self.received.support) = (span, None);
+        self.received.deep_contacts = Some(Excursion::default());
     }
 
     /// A window on the particles' own clock, which stands while they are held.

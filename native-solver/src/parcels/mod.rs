@@ -17,6 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::excursion::Excursion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::tetrahedra::TetPlace;
 use calcine_coupler::motion::{Motion, ParticleChanges};
@@ -424,6 +425,7 @@ impl Particles for NativeParcels {
         received.impulse.clone_from(&self.impulse);
         received.acted = span;
         received.support = Some(support);
+        received.deep_contacts = Some(Excursion::default());
         Ok(())
     }
 }

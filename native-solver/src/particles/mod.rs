@@ -483,6 +483,11 @@ impl Particles for NativeParticles {
         received.impulse.clone_from(&self.impulse);
         received.acted = self.acted;
         received.support = self.engine.as_mut().map(|engine| engine.take_support());
+        let deep = self
+            .engine
+            .as_mut()
+            .map(|engine| engine.take_deep_contacts());
+        received.deep_contacts = Some(deep.unwrap_or_default());
         Ok(())
     }
 }

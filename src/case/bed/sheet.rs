@@ -79,6 +79,9 @@ const DIAMETER: [&str; 1] = ["diameter"];
 
 const RADIUS: [&str; 1] = ["radius"];
 
+/// Share by which a diameter and twice a radius differ where programs write six digits.
+const SAME_SIZE: f64 = 1e-5;
+
 const TEMPERATURE: [&str; 3] = ["temperature", "f_temp", "f_temp[0]"];
 
 const TYPE: [&str; 1] = ["type"];
@@ -110,6 +113,28 @@ impl Sheet {
                 let missing = missing.collect::<Vec<_>>().join(" and ");
                 let fact = format!("it has components of the {what}, but no column {missing}");
                 Err((None, fact))
+            }
+        }
+    }
+
+    /// Diameters must be twice the radii where a file states both, up to the digits that programs write.
+    fn check_sizes(&self, order: &[usize]) -> Result<(), Fault> {
+        let both = (self.column(&DIAMETER), self.column(&RADIUS));
+        let (Some(diameter), Some(radius)) = both else {
+            return Ok(());
+        };
+        let odd = order.iter().find(|&&index| {
+            let (diameter, twice) = (diameter[index], 2.0 * radius[index]);
+            (diameter - twice).abs() > SAME_SIZE * diameter.abs()
+        });
+        match odd {
+            None => Ok(()),
+            Some(&index) => {
+                let what = format!(
+                    "the diameter is {}, the radius {}, which is not half of it; correct one of them, or leave out its column",
+                    diameter[index], radius[index]
+                );
+                Err((Some(self.row(index)), what))
             }
         }
     }
@@ -154,6 +179,7 @@ impl Sheet {
         }
         let own = self.column(&DIAMETER).map(|list| (list, 1.0));
         let own = own.or_else(|| self.column(&RADIUS).map(|list| (list, 2.0)));
+        self.check_sizes(&order)?;
         let temperature = self.column(&TEMPERATURE);
         let velocity = self.vectors("velocity", VELOCITY)?;
         let spin = self.vectors("angular velocity", SPIN)?;

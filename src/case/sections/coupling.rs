@@ -4,6 +4,7 @@ use std::path::Path;
 
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::openfoam::stock::{StockSolver, refusal};
+use calcine_adapters::openfoam::template;
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::GasStorage;
@@ -108,6 +109,17 @@ pub(super) fn check_stock(
     }
     if let Some(why) = refusal(openfoam.solver, gas, splits) {
         section.fail("solver", format!("names {name}, but {why}"), other);
+    }
+}
+
+/// A template of the user's own must be readable, and say nothing that has no effect.
+pub(super) fn check_template(root: &TableReader<'_>, openfoam: &ExternalSpec, gas: &GasSetup) {
+    let (Some(path), Some(section)) = (&openfoam.template, root.table("openfoam")) else {
+        return;
+    };
+    for finding in template::findings(path, openfoam.solver, gas) {
+        let (rule, help) = finding.parts();
+        section.fail("template", format!("cannot be used: {rule}"), help);
     }
 }
 

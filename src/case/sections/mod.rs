@@ -35,6 +35,7 @@ mod turbulence;
 mod walls;
 mod zone;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use self::gas::GasRead;
@@ -134,6 +135,9 @@ pub(super) fn case(
         quantities::quantities(root, &known)
     };
     let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
+    if let Some(gas) = &gas {
+        coupling::check_template(root, &openfoam, &gas.setup);
+    }
     if let (Some(gas), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, &gas.setup, time, laws.as_ref());
     }
@@ -197,6 +201,7 @@ pub(super) fn case(
         gas,
         gas_held,
         gas_files,
+        files: BTreeMap::new(),
         particles: particles?,
         feeds,
         outlets,

@@ -3,12 +3,14 @@
 use std::hint::black_box;
 use std::ops::Range;
 
+use calcine_coupler::excursion::Excursion;
 use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{CohesionArea, ContactModel, Slip};
 
 use super::candidates::{CandidatePairs, TouchingPair};
 use super::contact::{SurfaceOverlap, evaluate};
+use super::deep;
 use super::energy::ContactEnergy;
 use super::force_context::ForceContext;
 use super::lanes;
@@ -53,6 +55,8 @@ pub struct Block {
     /// Impulse in N s that walls and held particles gave its free ones, and what of it others' free ones
     /// got: sums over all blocks are of free particles.
     pub support: Vec3,
+    /// Contacts of the last evaluation that are pressed in farther than their law holds, over the smaller radius, by rows.
+    pub deep: Excursion,
 }
 
 impl Block {
@@ -66,8 +70,14 @@ impl Block {
         let held = std::mem::take(&mut self.budget.elastic_tangential);
         self.budget.elastic_normal = 0.0;
         self.load.fill(SphereLoad::default());
-        self.walls
-            .evaluate::<L, BUDGET>(scene, self.begin, &mut self.load, &mut self.budget);
+        self.deep = Excursion::default();
+        self.walls.evaluate::<L, BUDGET>(
+            scene,
+            self.begin,
+            &mut self.load,
+            &mut self.budget,
+            &mut self.deep,
+        );
         self.wall_force = if self.walls.groups.is_empty() {
             Vec3::zeros()
         } else {
@@ -80,6 +90,7 @@ impl Block {
             load,
             touching,
             budget,
+            deep,
             ..
         } = self;
         let begin = *begin;
@@ -98,6 +109,7 @@ impl Block {
                 touching,
                 load,
                 outgoing,
+                deep,
             });
             return;
         }
@@ -107,6 +119,7 @@ impl Block {
             inner,
             &touching[..found],
             budget,
+            deep,
             |[i, j], one, other, _| {
                 load[i - begin].add(&one);
                 load[j - begin].add(&other);
@@ -118,6 +131,7 @@ impl Block {
             cross,
             &touching[..found],
             budget,
+            deep,
             |[i, _], one, other, slot| {
                 load[i - begin].add(&one);
                 outgoing[slot] = other;
@@ -142,6 +156,7 @@ struct Plain<'a, 'b, L> {
     touching: &'a mut [TouchingPair],
     load: &'a mut [SphereLoad],
     outgoing: &'a mut [SphereLoad],
+    deep: &'a mut Excursion,
 }
 
 impl<L: ContactModel> pulp::WithSimd for Plain<'_, '_, L> {
@@ -156,12 +171,14 @@ impl<L: ContactModel> pulp::WithSimd for Plain<'_, '_, L> {
             touching,
             load,
             outgoing,
+            deep,
         } = self;
         let found = touching_of(inner, &scene.spheres.place, touching);
         lanes::pairs(
             scene,
             inner,
             &touching[..found],
+            deep,
             #[inline(always)]
             |[i, j], one, other, _| {
                 load[i - begin].add(&one);
@@ -177,6 +194,7 @@ impl<L: ContactModel> pulp::WithSimd for Plain<'_, '_, L> {
             scene,
             cross,
             &touching[..found],
+            deep,
             #[inline(always)]
             |[i, _], one, other, slot| {
                 load[i - begin].add(&one);
@@ -221,6 +239,7 @@ fn pairs<L: ContactModel, const BUDGET: bool>(
     candidates: &mut CandidatePairs,
     touching: &[TouchingPair],
     budget: &mut ContactEnergy,
+    deep: &mut Excursion,
     mut sink: impl FnMut([usize; 2], SphereLoad, SphereLoad, usize),
 ) {
     let spheres = scene.spheres;
@@ -238,6 +257,9 @@ fn pairs<L: ContactModel, const BUDGET: bool>(
             }
         }
         let (surfaces, arms) = meet(scene.rules, a, b, va, vb);
+        if deep::beyond(surfaces.overlap, [a.radius, b.radius]) > 0.0 {
+            deep::note(deep, spheres, [i, j], surfaces.overlap);
+        }
         let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
         let prepared = candidates.prepared.get(k).copied().unwrap_or(0.0);
         let torque = candidates.rolling.get_mut(k).unwrap_or(&mut unused);

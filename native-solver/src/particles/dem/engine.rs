@@ -7,6 +7,7 @@ mod state;
 
 use std::iter::repeat;
 
+use calcine_coupler::excursion::Excursion;
 use calcine_coupler::motion::{ContactForce, Contacts, LostParticles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{
@@ -131,6 +132,8 @@ pub struct Engine {
     stamp: u64,
     searches: u64,
     counting: bool,
+    /// Contacts that were pressed in too far since they were asked for last.
+    deep: Excursion,
 }
 
 impl Engine {
@@ -159,6 +162,7 @@ impl Engine {
             stamp: 1,
             searches: 0,
             counting: false,
+            deep: Excursion::default(),
             contacts,
         }
     }
@@ -299,6 +303,7 @@ impl Engine {
                 self.evaluate(step);
                 self.drift(2)
             };
+            self.note_deep_contacts();
         }
         self.take_up();
         self.close();

@@ -4,10 +4,12 @@
 
 use std::ops::Range;
 
+use calcine_coupler::excursion::Excursion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 
 use super::candidates::{CandidatePairs, TouchingPair};
+use super::deep;
 use super::force_context::ForceContext;
 use super::sphere::SphereLoad;
 
@@ -35,6 +37,8 @@ struct Batch {
     force: [Lane; 3],
     twist: [Lane; 3],
     arm: [Lane; 2],
+    overlap: Lane,
+    beyond: Lane,
 }
 
 /// Evaluates the candidates that touch; the sink gets the indices, both loads and the candidate.
@@ -43,6 +47,7 @@ pub fn pairs<L: ContactModel>(
     scene: &ForceContext<'_, L>,
     candidates: &mut CandidatePairs,
     touching: &[TouchingPair],
+    deep: &mut Excursion,
     mut sink: impl FnMut([usize; 2], SphereLoad, SphereLoad, usize),
 ) {
     let mut batch = Batch::default();
@@ -58,6 +63,10 @@ pub fn pairs<L: ContactModel>(
         batch.evaluate(scene);
         for (lane, touch) in chunk.iter().enumerate() {
             let k = touch.index();
+            let pair = candidates.pair[k].map(|index| index as usize);
+            if batch.beyond[lane] > 0.0 {
+                deep::note(deep, scene.spheres, pair, batch.overlap[lane]);
+            }
             candidates.shift[k] = at(&batch.shift, lane);
             let (force, twist) = (at(&batch.force, lane), at(&batch.twist, lane));
             let one = SphereLoad {
@@ -68,12 +77,7 @@ pub fn pairs<L: ContactModel>(
                 force: -force,
                 torque: -(batch.arm[1][lane] * twist),
             };
-            sink(
-                candidates.pair[k].map(|index| index as usize),
-                one,
-                other,
-                k,
-            );
+            sink(pair, one, other, k);
         }
     }
 }
@@ -224,6 +228,8 @@ impl Batch {
             }
             self.arm[0][l] = arms[0];
             self.arm[1][l] = arms[1];
+            self.overlap[l] = overlap;
+            self.beyond[l] = deep::beyond(overlap, [ra, rb]);
         }
     }
 }

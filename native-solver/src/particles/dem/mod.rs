@@ -8,6 +8,7 @@
 mod block;
 mod candidates;
 mod contact;
+mod deep;
 pub mod energy;
 mod engine;
 mod force_context;

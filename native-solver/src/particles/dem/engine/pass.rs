@@ -2,6 +2,7 @@
 
 use std::iter::repeat;
 
+use calcine_coupler::excursion::Excursion;
 use calcine_coupler::motion::ContactForce;
 use calcine_coupler::physics::contact::{
     ContactModel, HertzMindlin, Linear, LinearSprings, OpenfoamSpringSliderDashpot,
@@ -32,6 +33,20 @@ impl Engine {
     /// comes out are the bits of forces first and motion after.
     pub(super) fn sweep(&mut self, step: f64) -> f64 {
         self.pass(step, true)
+    }
+
+    /// Contacts that were pressed in farther than their law holds since this was asked last, by rows, over the smaller radius:
+    /// the most in one step, and the deepest of all.
+    pub fn take_deep_contacts(&mut self) -> Excursion {
+        std::mem::take(&mut self.deep)
+    }
+
+    pub(super) fn note_deep_contacts(&mut self) {
+        let mut now = Excursion::default();
+        for block in &self.blocks {
+            now.add(&block.deep);
+        }
+        self.deep.keep_worst(&now);
     }
 
     fn pass(&mut self, step: f64, moves: bool) -> f64 {

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use calcine_coupler::excursion::Excursion;
 use calcine_coupler::motion::{Rolling, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
 use super::super::contact::{SurfaceOverlap, evaluate};
+use super::super::deep;
 use super::super::energy::ContactEnergy;
 use super::super::force_context::ForceContext;
 use super::super::sphere::{SphereLoad, SpherePosition};
@@ -113,6 +115,7 @@ impl WallContacts {
         begin: usize,
         load: &mut [SphereLoad],
         budget: &mut ContactEnergy,
+        deep: &mut Excursion,
     ) {
         self.pressed.clear();
         if scene.walls.iter().any(|wall| wall.servo.is_some()) {
@@ -130,6 +133,10 @@ impl WallContacts {
             let mut touch = |near: NearestPoint, slots: &mut [WallContactMemory]| {
                 let point = own - near.distance * near.normal;
                 let found = Found { near, point };
+                let inside = place.radius - near.distance;
+                if deep::beyond(inside, [place.radius; 2]) > 0.0 {
+                    deep::note(deep, scene.spheres, [index; 2], inside);
+                }
                 contact::<L, BUDGET>(scene, wall, index, found, prepared, slots, load, budget);
             };
             match &wall.shape {
