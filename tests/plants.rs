@@ -11,7 +11,7 @@ use calcine::plant::PlantSummary;
 use crate::support::program;
 use crate::support::stopped::{Stopped, stop};
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
@@ -23,18 +23,18 @@ fn files(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-fn calcine(words: &[&str]) -> Output {
+pub fn calcine(words: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
     command.args(words).output().unwrap()
 }
 
-fn said(output: &Output) -> String {
+pub fn said(output: &Output) -> String {
     let texts = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
     texts.concat()
 }
 
 /// Runs a case into a folder with these settings; what it said.
-fn run(case: &Path, out: &Path, settings: &[&str], words: &[&str]) -> Output {
+pub fn run(case: &Path, out: &Path, settings: &[&str], words: &[&str]) -> Output {
     let mut all = vec!["run", case.to_str().unwrap(), "--quiet"];
     for setting in settings {
         all.extend(["--set", setting]);
@@ -271,98 +271,6 @@ fn a_bed_that_is_ahead_of_its_plant_goes_back_to_the_checkpoint_that_belongs_to_
     assert!(read(&part) == read(&whole));
 }
 
-/// Twin data of the shipped case, made here: the growth and the kernel that they were made with are found, and the
-/// derivatives are those between runs on both sides.
-#[test]
-fn a_tuning_finds_a_known_growth_and_kernel_from_twin_data() {
-    let folder = tempfile::tempdir().unwrap();
-    let shipped = root().join("cases/granulation-tuning.toml");
-    let keys = [
-        "units.granulator.granulator.growth.linear",
-        "units.granulator.granulator.aggregation.rate",
-    ];
-    let truth = folder.path().join("truth");
-    let at = [
-        format!("{}=2 mm", keys[0]),
-        format!("{}=1e-11 1/s", keys[1]),
-    ];
-    let settings = [at[0].as_str(), &at[1], "method.tolerance=1e-9"];
-    let output = run(&shipped, &truth, &settings, &[]);
-    assert!(output.status.success(), "{}", said(&output));
-    let table = fs::read_to_string(truth.join("distributions.csv")).unwrap();
-    let mut rows = table
-        .lines()
-        .map(|line| line.split(',').collect::<Vec<_>>());
-    let head = rows.next().unwrap();
-    let edges = head[2..]
-        .iter()
-        .map(|edge| edge[3..edge.len() - 2].to_owned());
-    // Every tenth edge of the size classes is a sieve.
-    let picked: Vec<usize> = (9..edges.len()).step_by(10).collect();
-    let edges: Vec<String> = edges.collect();
-    let mut data = String::from("time_s");
-    picked
-        .iter()
-        .for_each(|k| data.push_str(&format!(", {} m", edges[*k])));
-    data.push('\n');
-    for row in rows.filter(|row| row[1] == "streams.discharge" && row[0] != "0.0") {
-        let masses: Vec<f64> = row[2..].iter().map(|m| m.parse().unwrap()).collect();
-        let all: f64 = masses.iter().sum();
-        data.push_str(row[0]);
-        for k in &picked {
-            let below: f64 = masses[..=*k].iter().sum();
-            data.push_str(&format!(", {:.4}", below / all));
-        }
-        data.push('\n');
-    }
-    fs::write(folder.path().join("granulation-tuning.csv"), data).unwrap();
-    let text = fs::read_to_string(&shipped).unwrap();
-    let text = text.replace("samples = 8", "samples = 3");
-    let case = folder.path().join("twin.toml");
-    fs::write(&case, text).unwrap();
-    let out = folder.path().join("tuned");
-    let words = [
-        "tune",
-        case.to_str().unwrap(),
-        "--quiet",
-        "--out",
-        out.to_str().unwrap(),
-    ];
-    let output = calcine(&words);
-    assert!(output.status.success(), "{}", said(&output));
-    let summary = PlantSummary::read(&out).unwrap();
-    let found = summary.tuning.unwrap();
-    for (one, truth) in found.parameters.iter().zip([2.0, 1e-11]) {
-        assert!((one.value / truth - 1.0).abs() < 1e-2, "{one:?}");
-        assert!(one.interval[0] < one.value && one.value < one.interval[1]);
-    }
-    let mean = |value: &str, name: &str| {
-        let own = folder.path().join(name);
-        let growth = format!("{}={value} mm", keys[0]);
-        let settings = [growth.as_str(), &at[1], "method.tolerance=1e-9"];
-        run(&shipped, &own, &settings, &[]);
-        PlantSummary::read(&own).unwrap().quantities["discharge_mean"]
-            .value
-            .unwrap()
-    };
-    let slope = (mean("2.02", "above") - mean("1.98", "below")) / 0.04;
-    let told = found
-        .sensitivities
-        .iter()
-        .find(|one| one.quantity == "discharge_mean")
-        .unwrap();
-    assert!(
-        (told.by[0] / slope - 1.0).abs() < 5e-3,
-        "{} {slope}",
-        told.by[0]
-    );
-    assert!(
-        said(&output).contains("d discharge_mean / d units.granulator"),
-        "{}",
-        said(&output)
-    );
-}
-
 /// By the program, with windows of its own in the case, which the monolithic run leaves idle.
 #[test]
 fn both_methods_of_recycles_agree_within_a_millionth() {
@@ -407,7 +315,7 @@ fn both_methods_of_recycles_agree_within_a_millionth() {
     assert!(again.status.success(), "{}", said(&again));
 }
 
-/// The plant of every unit by windows at a tolerance of 1e-8.
+/// The plant of every unit by windows at a tolerance of 1e-8, with both accelerations.
 #[test]
 fn windows_agree_with_closed_recycles_on_every_unit() {
     let folder = tempfile::tempdir().unwrap();
@@ -442,9 +350,15 @@ fn windows_agree_with_closed_recycles_on_every_unit() {
         values.map(|one| one.value.unwrap()).collect::<Vec<f64>>()
     };
     let closed = of("monolithic", &["method.recycles=monolithic"]);
-    let found = of("waveform", &["method.recycles=waveform"]);
-    for (one, other) in found.iter().zip(&closed) {
-        assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
+    for acceleration in ["anderson", "wegstein"] {
+        let setting = format!("method.waveform.acceleration={acceleration}");
+        let found = of(acceleration, &["method.recycles=waveform", &setting]);
+        for (one, other) in found.iter().zip(&closed) {
+            assert!(
+                (one / other - 1.0).abs() < 1e-6,
+                "{acceleration}: {one} {other}"
+            );
+        }
     }
 }
 

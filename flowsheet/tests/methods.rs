@@ -33,6 +33,22 @@ fn both_methods_of_recycles_agree_and_close() {
     }
 }
 
+/// The first window, too, where its iterations are neither few nor many.
+#[test]
+fn a_window_of_neither_few_nor_many_iterations_is_followed_by_one_of_its_length() {
+    let plant = plant(40, 1.0);
+    let settings = WaveformSettings {
+        first: 1e-3,
+        few: 1,
+        many: 400,
+        ..WaveformSettings::default()
+    };
+    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-7).unwrap();
+    run.advance_by_windows(0.01, &settings).unwrap();
+    assert_eq!(run.checkpoint().window, 1e-3);
+    assert!(run.ledger().closure() <= 1e-12);
+}
+
 /// What a checkpoint holds decides all that follows.
 #[test]
 fn a_resumed_window_has_the_same_bits() {

@@ -11,6 +11,7 @@ use super::continuation::{Recorded, begin_again};
 use super::failure::Failure;
 use super::shell::word;
 use super::signals::SignalThread;
+use super::tune::Tuning;
 use super::{check, compare, run, sweep};
 use crate::case::plant::{PlantCase, read_plant};
 use crate::exit;
@@ -57,21 +58,38 @@ fn code(summary: &PlantSummary) -> u8 {
     }
 }
 
+/// How a run begins, and whether it is to end early.
+#[derive(Default)]
+struct Begin<'a> {
+    resume: bool,
+    from: Option<&'a Path>,
+    stop_after: Option<std::time::Duration>,
+}
+
+impl Begin<'_> {
+    /// At its start, or with what is there.
+    fn again(resume: bool) -> Self {
+        Self {
+            resume,
+            ..Self::default()
+        }
+    }
+}
+
 /// Runs a case into a folder and tells how it ended.
 fn into_folder(
     case: &PlantCase,
     out: &Path,
-    arguments: Option<&run::Arguments>,
+    begin: Begin<'_>,
     quiet: bool,
     go_on: &str,
 ) -> Result<(u8, Option<PlantSummary>), Failure> {
     let interrupts = Interrupts::default();
-    let stop_after = arguments.and_then(|one| one.stop_after);
-    let _signals = SignalThread::start(&interrupts, stop_after)?;
+    let _signals = SignalThread::start(&interrupts, begin.stop_after)?;
     let start = PlantStart {
         out,
-        resume: arguments.is_some_and(|one| one.resume.is_some()),
-        from: arguments.and_then(|one| one.from.as_deref()),
+        resume: begin.resume,
+        from: begin.from,
         progress: !quiet,
         interrupts,
     };
@@ -131,7 +149,12 @@ pub(super) fn run(
             .map_err(|cause| Failure::unwritable(&out, "--out", &cause))?;
         recorded.write(&out)?;
     }
-    let (code, summary) = into_folder(&case, &out, Some(arguments), arguments.quiet, &go_on)?;
+    let begin = Begin {
+        resume: arguments.resume.is_some(),
+        from: arguments.from.as_deref(),
+        stop_after: arguments.stop_after,
+    };
+    let (code, summary) = into_folder(&case, &out, begin, arguments.quiet, &go_on)?;
     if let Some(summary) = summary {
         let page = write_plant_report(&out);
         say(plant_closing(&summary))?;
@@ -142,12 +165,8 @@ pub(super) fn run(
 }
 
 /// `calcine tune` of a plant: fits its keys, then runs it with what was found.
-pub(super) fn tune(
-    case_file: &Path,
-    set: &[String],
-    out: Option<&Path>,
-    quiet: bool,
-) -> Result<u8, Failure> {
+pub(super) fn tune(line: &Tuning<'_>) -> Result<u8, Failure> {
+    let (case_file, set, quiet) = (line.case, line.set, line.quiet);
     let case = read(case_file, set)?;
     let Some(spec) = &case.tuning else {
         return refused(format_args!(
@@ -170,38 +189,82 @@ pub(super) fn tune(
             read(case_file, &[set, &[key.setting(bound)]].concat())?;
         }
     }
-    let out = folder(&case, out);
-    if out.join(crate::results::SUMMARY).exists() {
-        return refused(format_args!(
-            "{} holds results: name another folder with `--out`",
-            out.display()
-        ));
+    let out = folder(&case, line.out);
+    let hash = crate::plant::trials::hash_of(&case, spec);
+    if let Some(code) = tuned_before(&hash, &out, line.resume)? {
+        return Ok(code);
     }
+    std::fs::create_dir_all(&out).map_err(|cause| Failure::unwritable(&out, "--out", &cause))?;
+    let path = std::path::absolute(case_file).unwrap_or_else(|_| case_file.to_owned());
+    let recorded = Recorded {
+        case: path.to_string_lossy().into_owned(),
+        options: set.to_vec(),
+    };
+    recorded.write(&out)?;
     let interrupts = Interrupts::default();
     let signals = SignalThread::start(&interrupts, None)?;
-    let found = crate::plant::tune::tune_plant(&case, spec, &out, &interrupts);
+    let found = crate::plant::tune::tune_plant(&case, spec, &out, line.resume, &interrupts);
     drop(signals);
-    let found = found.map_err(|error| match error {
-        calcine_tuning::TuningError::Interrupted => Failure::new(
-            exit::OTHER,
-            "interrupted; a tuning of a plant begins again from its start",
-        ),
-        error => Failure::new(exit::DIVERGED, error),
-    })?;
+    let go_on = format!("`calcine tune --resume {}` goes on", word(out.as_os_str()));
+    let found = match found {
+        Ok(found) => found,
+        Err(calcine_tuning::TuningError::Interrupted) => {
+            say(format_args!("stopped; {go_on}"))?;
+            return Ok(exit::CHECKPOINTED);
+        }
+        Err(error) => return Err(Failure::new(exit::DIVERGED, error)),
+    };
     let best = found.parameters.iter().zip(&spec.parameters);
     let best: Vec<String> = best.map(|(one, key)| key.setting(one.value)).collect();
     let tuned = read(case_file, &[set, &best].concat())?;
-    let go_on = begin_again("tuning", &out);
-    let (code, summary) = into_folder(&tuned, &out, None, quiet, &go_on)?;
-    if let Some(mut summary) = summary {
-        summary.tuning = Some(found);
-        let failed = |error: crate::results::ResultsError| Failure::told(exit::OTHER, &error);
-        summary.replace(&out).map_err(failed)?;
-        let page = write_plant_report(&out);
-        say(plant_closing(&summary))?;
-        say(format_args!("report: {}", page.map_err(failed)?.display()))?;
+    // The run with what was found may have begun before.
+    let begun = out.join(crate::results::SUMMARY).exists();
+    let (code, summary) = into_folder(&tuned, &out, Begin::again(begun), quiet, &go_on)?;
+    if code == exit::CHECKPOINTED {
+        return Ok(code);
     }
+    let failed = |error: crate::results::ResultsError| Failure::told(exit::OTHER, &error);
+    let mut summary = match summary {
+        Some(summary) => summary,
+        None => PlantSummary::read(&out).map_err(failed)?,
+    };
+    summary.tuning = Some(found);
+    summary.replace(&out).map_err(failed)?;
+    let page = write_plant_report(&out);
+    say(plant_closing(&summary))?;
+    say(format_args!("report: {}", page.map_err(failed)?.display()))?;
     Ok(code)
+}
+
+/// What the folder of a tuning holds already: an end, an error, or nothing that is in the way.
+fn tuned_before(own: &str, out: &Path, resume: bool) -> Result<Option<u8>, Failure> {
+    let place = out.display();
+    let is_run = out.join(crate::results::SUMMARY).exists();
+    match (resume, crate::plant::trials::trials_of(out)) {
+        (false, None) if !is_run => Ok(None),
+        (false, None) => refused(format_args!(
+            "{place} holds results: name another folder with `--out`"
+        )),
+        (false, Some(_)) => refused(format_args!(
+            "{place} holds another tuning: write elsewhere with `--out DIR`, go on with it by `--resume`, or remove the folder"
+        )),
+        (true, None) => refused(format_args!(
+            "{place} holds no tuning that could go on: leave `--resume` out"
+        )),
+        (true, Some(hash)) if hash != own => refused(format_args!(
+            "{place} is of a case with the hash {hash}, this one has {own}: resume with the file, the measurements and the `--set` values that the tuning began with"
+        )),
+        (true, Some(_)) if is_run => {
+            let summary =
+                PlantSummary::read(out).map_err(|error| Failure::told(exit::OTHER, &error))?;
+            if summary.tuning.is_none() {
+                return Ok(None);
+            }
+            say(format_args!("the tuning in {place} is complete"))?;
+            Ok(Some(code(&summary)))
+        }
+        (true, Some(_)) => Ok(None),
+    }
 }
 
 /// `calcine check` of a plant.
@@ -241,7 +304,13 @@ pub(super) fn compare(arguments: &compare::Arguments) -> Result<u8, Failure> {
         set.push(format!("method.recycles={method}"));
         let case = read(&arguments.case, &set)?;
         say(format_args!("{method}:"))?;
-        let (code, summary) = into_folder(&case, &out.join(method), None, arguments.quiet, &go_on)?;
+        let (code, summary) = into_folder(
+            &case,
+            &out.join(method),
+            Begin::default(),
+            arguments.quiet,
+            &go_on,
+        )?;
         match summary {
             Some(summary) => say(plant_closing(&summary))?,
             None => return Ok(code),
@@ -284,7 +353,8 @@ pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
         say(settings.join("  "))?;
         let case = read(&arguments.case, settings)?;
         let place = out.join(sweep::folder_name(settings));
-        let (code, summary) = into_folder(&case, &place, None, arguments.quiet, &go_on)?;
+        let (code, summary) =
+            into_folder(&case, &place, Begin::default(), arguments.quiet, &go_on)?;
         let Some(summary) = summary else {
             return Ok(code);
         };

@@ -62,11 +62,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         let kind = kind_of(case, set);
         let kind = kind.map_err(|wrong| Failure::new(exit::CASE, wrong.render()))?;
         if kind.name == "flowsheet" {
-            if resume {
-                let message = "a tuning of a plant is not resumed: leave `--resume` out";
-                return Err(Failure::new(exit::CASE, message));
-            }
-            return super::plant::tune(case, set, out, arguments.quiet);
+            return super::plant::tune(&Tuning {
+                case,
+                set,
+                out,
+                resume,
+                quiet: arguments.quiet,
+            });
         }
         tune(&Tuning {
             case,

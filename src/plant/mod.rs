@@ -12,11 +12,13 @@ mod progress;
 mod quantities;
 mod report;
 mod run;
+mod sensitivities;
 mod steady;
 #[cfg_attr(not(feature = "hdf5"), path = "no_store.rs")]
 mod store;
 mod summary;
 mod tell;
+pub(crate) mod trials;
 pub(crate) mod tune;
 
 pub use error::PlantRunError;

@@ -1,6 +1,7 @@
 //! The report of a plant: one self-contained HTML page made from a results folder.
 
 mod flowsheet;
+mod labels;
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +42,14 @@ pub fn write_plant_report(directory: &Path) -> Result<PathBuf, ResultsError> {
     page.section("Quantities of interest", "", &quantities(&summary));
     page.section(
         "Flowsheet",
-        "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows. Torn streams are broken.",
+        match summary.tears.is_empty() {
+            true => {
+                "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows."
+            }
+            false => {
+                "Streams at the end of the run: mass flow and median diameter; lines are wider where more flows. Streams at which recycles are torn are dashed."
+            }
+        },
         &flowsheet::draw(&case, &series, &summary),
     );
     if let Some(found) = &summary.tuning {
@@ -172,6 +180,19 @@ fn tuned(found: &PlantTuningSummary) -> String {
         .collect();
     let head = ["key", "#value", "#interval", "#bounds"];
     let mut html = table(&head, &keys);
+    if let Some(failure) = &found.failure {
+        let (failed, trials) = (found.failed, found.trials);
+        let failure = escape(failure);
+        html.push_str(&format!(
+            "<p>{failed} of {trials} trials failed, one of them: {failure}</p>"
+        ));
+    }
+    if let Some(cause) = &found.not_sensitive {
+        let cause = escape(cause);
+        html.push_str(&format!(
+            "<p>No derivatives beside what was found: {cause}</p>"
+        ));
+    }
     let slopes: Vec<Vec<String>> = found
         .sensitivities
         .iter()

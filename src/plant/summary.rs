@@ -204,8 +204,20 @@ pub struct PlantTuningSummary {
     pub correlated: Vec<(usize, usize, f64)>,
     /// Derivatives of the case's quantities at their last values.
     pub sensitivities: Vec<PlantSensitivity>,
+    /// Why there are none of these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_sensitive: Option<String>,
     /// Evaluations of the best fit.
     pub evaluations: usize,
+    /// Sets of values that were tried, those of the intervals too.
+    #[serde(default)]
+    pub trials: usize,
+    /// How many of these could not be followed.
+    #[serde(default)]
+    pub failed: usize,
+    /// What one of these said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
 }
 
 /// A key that was tuned.
@@ -219,7 +231,7 @@ pub struct PlantTunedParameter {
     pub value: f64,
     /// The interval.
     pub interval: [f64; 2],
-    /// True where the measurements do not end the interval, the bound does.
+    /// True where the measurements do not end the interval: the bound does, or trials beyond it fail.
     pub open: [bool; 2],
     /// The bounds.
     pub bounds: [f64; 2],

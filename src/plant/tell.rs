@@ -269,7 +269,8 @@ pub fn plant_closing(summary: &PlantSummary) -> String {
 fn tuned(text: &mut String, tuning: &PlantTuningSummary) {
     for one in &tuning.parameters {
         let ends = [0, 1].map(|end| match one.open[end] {
-            true => "bound".to_owned(),
+            true if one.interval[end] == one.bounds[end] => "bound".to_owned(),
+            true => format!("{}, where trials fail", printed(one.interval[end])),
             false => printed(one.interval[end]),
         });
         let _ = writeln!(
@@ -297,6 +298,16 @@ fn tuned(text: &mut String, tuning: &PlantTuningSummary) {
             text,
             "  {one} and {other} cannot be told apart: their errors go together by {by:.3}"
         );
+    }
+    if let Some(failure) = &tuning.failure {
+        let _ = writeln!(
+            text,
+            "  {} of {} trials failed, as {failure}",
+            tuning.failed, tuning.trials
+        );
+    }
+    if let Some(cause) = &tuning.not_sensitive {
+        let _ = writeln!(text, "  no derivatives beside what was found: {cause}");
     }
     for one in &tuning.sensitivities {
         for (key, slope) in tuning.parameters.iter().zip(&one.by) {

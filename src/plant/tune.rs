@@ -15,36 +15,19 @@ use calcine_tuning::search::{StartSettings, fit_globally};
 use calcine_tuning::{ParameterSpace, TunedParameter, TuningError, TuningProblem};
 
 use super::measure::field;
+use super::sensitivities::{Observed, sensitivities_of, write_sensitivities};
 use super::steady::plant_with;
-use super::summary::{PlantSensitivity, PlantTunedParameter, PlantTuningSummary};
+use super::summary::{PlantTunedParameter, PlantTuningSummary};
+use super::trials::{TrialLog, hash_of};
 use crate::case::plant::{
     OverTime, PlantCase, PlantField, PlantMeasure, PlantPlace, PlantTuningSpec,
 };
-use crate::results::sheet::{line, number};
-use crate::results::{ResultsError, files};
+use crate::results::ResultsError;
 
-/// Table of what was measured, what the plant does, and how that depends on the parameters.
-pub(super) const SENSITIVITIES: &str = "sensitivities.csv";
 /// Tolerance of the runs at most: difference quotients need runs that are smooth in the parameters.
 const TOLERANCE: f64 = 1e-8;
 /// Step of a difference quotient, as a share of the bounds.
 const STEP: f64 = 1e-4;
-
-/// One number that is compared or told.
-struct Observed {
-    /// Of what.
-    place: String,
-    /// Time in s.
-    time: f64,
-    /// Which number of it.
-    what: String,
-    /// Unit.
-    unit: String,
-    /// What was measured, and its standard deviation; none of a quantity of the case.
-    measured: Option<[f64; 2]>,
-    /// Place among the objectives.
-    objective: Option<usize>,
-}
 
 /// The plant of a case as a problem with parameters.
 struct PlantProblem<'a> {
@@ -54,6 +37,7 @@ struct PlantProblem<'a> {
     objectives: Vec<String>,
     /// Times in s of the measurements, rising; of the steady state one.
     times: Vec<f64>,
+    trials: TrialLog,
     interrupts: &'a Interrupts,
 }
 
@@ -79,6 +63,7 @@ impl<'a> PlantProblem<'a> {
     fn new(
         case: &'a PlantCase,
         spec: &'a PlantTuningSpec,
+        trials: TrialLog,
         interrupts: &'a Interrupts,
     ) -> Result<Self, TuningError> {
         let mut objectives: Vec<String> = Vec::new();
@@ -104,6 +89,7 @@ impl<'a> PlantProblem<'a> {
             space: parameters(spec)?,
             objectives,
             times,
+            trials,
             interrupts,
         })
     }
@@ -300,8 +286,12 @@ impl TuningProblem for PlantProblem<'_> {
         if self.interrupts.count() > 0 {
             return Err(TuningError::Interrupted);
         }
-        let seen = self.look(&self.space.values(places));
-        let seen = seen.map_err(|error| TuningError::Model(error.to_string()))?;
+        let seen = self.trials.trial(places, || {
+            let seen = self.look(&self.space.values(places));
+            seen.map_err(|error| error.to_string())
+        });
+        // A trial that fails is a failed candidate: the search goes on without it.
+        let seen = seen.map_err(TuningError::Model)?;
         out.clear();
         out.resize(self.objectives.len(), Vec::new());
         for (one, value) in self.observed().iter().zip(seen) {
@@ -317,15 +307,18 @@ impl TuningProblem for PlantProblem<'_> {
     }
 }
 
-/// Tunes the keys of a plant: what was found, with its table written into the folder.
+/// Tunes the keys of a plant: what was found, with its tables written into the folder. It may go on with the trials that are there.
 pub(crate) fn tune_plant(
     case: &PlantCase,
     spec: &PlantTuningSpec,
     out: &Path,
+    go_on: bool,
     interrupts: &Interrupts,
 ) -> Result<PlantTuningSummary, TuningError> {
-    let problem = PlantProblem::new(case, spec, interrupts)?;
-    let failed = |error: PlantError| TuningError::Model(error.to_string());
+    let told = |error: ResultsError| TuningError::Model(error.to_string());
+    let keys: Vec<&str> = spec.parameters.iter().map(|one| one.key.as_str()).collect();
+    let trials = TrialLog::open(out, &hash_of(case, spec), &keys, go_on).map_err(told)?;
+    let problem = PlantProblem::new(case, spec, trials, interrupts)?;
     let choice = FitChoice::default();
     let settings = StartSettings {
         samples: spec.sets[0],
@@ -349,24 +342,18 @@ pub(crate) fn tune_plant(
             bounds: key.bounds,
         });
     }
-    let derivatives = problem.derivatives(&values).map_err(failed)?;
-    let observed = problem.observed();
-    write_sensitivities(out, spec, &observed, &derivatives)
-        .map_err(|error| TuningError::Model(error.to_string()))?;
-    let quantities = observed
-        .iter()
-        .enumerate()
-        .filter(|(_, one)| one.measured.is_none());
-    let sensitivities = quantities.map(|(row, one)| PlantSensitivity {
-        quantity: one.place.clone(),
-        unit: one.unit.clone(),
-        value: derivatives.values[row],
-        by: derivatives
-            .columns
-            .iter()
-            .map(|column| column[row])
-            .collect(),
-    });
+    let mut sensitivities = Vec::new();
+    let mut not_sensitive = None;
+    match problem.derivatives(&values) {
+        Ok(derivatives) => {
+            let observed = problem.observed();
+            write_sensitivities(out, spec, &observed, &derivatives).map_err(told)?;
+            sensitivities = sensitivities_of(&observed, &derivatives);
+        }
+        // Beside the best values there are some of which there is no plant.
+        Err(error) => not_sensitive = Some(error.to_string()),
+    }
+    let count = problem.trials.count().map_err(told)?;
     let correlated = correlated(&fitted).unwrap_or_default().into_iter();
     let sums = problem
         .objectives
@@ -382,48 +369,11 @@ pub(crate) fn tune_plant(
         correlated: correlated
             .map(|pair| (pair.first, pair.second, pair.correlation))
             .collect(),
-        sensitivities: sensitivities.collect(),
+        sensitivities,
+        not_sensitive,
         evaluations: fitted.evaluations,
+        trials: count.tried,
+        failed: count.failed,
+        failure: count.failure,
     })
-}
-
-/// Writes what was measured, what the plant does, and its derivatives by the keys in their units.
-fn write_sensitivities(
-    out: &Path,
-    spec: &PlantTuningSpec,
-    observed: &[Observed],
-    derivatives: &Derivatives,
-) -> Result<(), ResultsError> {
-    files::directory(out)?;
-    let path = out.join(SENSITIVITIES);
-    let mut head: Vec<String> = [
-        "place",
-        "time_s",
-        "what",
-        "unit",
-        "measured",
-        "deviation",
-        "model",
-    ]
-    .map(String::from)
-    .to_vec();
-    let keys = spec.parameters.iter();
-    head.extend(keys.map(|key| match key.unit.as_str() {
-        "" => format!("d/d {}", key.key),
-        unit => format!("d/d {} per {unit}", key.key),
-    }));
-    let mut text = line(&path, &head)?;
-    for (row, one) in observed.iter().enumerate() {
-        let [measured, deviation] = one.measured.unwrap_or([f64::NAN; 2]);
-        let mut words = vec![
-            one.place.clone(),
-            number(one.time),
-            one.what.clone(),
-            one.unit.clone(),
-        ];
-        words.extend([measured, deviation, derivatives.values[row]].map(number));
-        words.extend(derivatives.columns.iter().map(|column| number(column[row])));
-        text.extend(line(&path, &words)?);
-    }
-    files::replace(&path, &text)
 }

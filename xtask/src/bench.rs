@@ -16,8 +16,9 @@ use crate::tasks;
 use crate::workspace::Workspace;
 
 /// Packages that may have benchmarks, by their folders.
-const FOLDERS: [&str; 8] = [
+const FOLDERS: [&str; 9] = [
     ".",
+    "flowsheet",
     "coupler",
     "coupler/physics",
     "coupler/interior",

@@ -48,14 +48,16 @@ impl PlantRun<'_> {
                         self.exchange()?;
                         self.settle()?;
                     }
-                    if took < span {
+                    self.window = if took < span {
                         // Shortened by the end: says nothing about the next.
-                        self.window = span;
+                        span
                     } else if iterations <= settings.few {
-                        self.window = (span * settings.change).min(settings.longest);
+                        (span * settings.change).min(settings.longest)
                     } else if iterations > settings.many {
-                        self.window = span / settings.change;
-                    }
+                        span / settings.change
+                    } else {
+                        span
+                    };
                 }
                 None => {
                     self.window = 0.5 * took;

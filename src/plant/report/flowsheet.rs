@@ -5,16 +5,76 @@ use std::fmt::Write as _;
 use super::super::drawing::Places;
 use super::super::files::TimeTable;
 use super::super::summary::PlantSummary;
+use super::labels::{Labelled, Rectangle, placed};
 use crate::case::plant::PlantCase;
 use crate::report::number::figure;
 use crate::report::page::escape;
 
 /// Size of a unit's box, and of the space about it.
-const BOX: (f64, f64) = (132.0, 48.0);
-const STEP: (f64, f64) = (276.0, 122.0);
-/// Distance between streams that flow back, below or above the units.
+const BOX: (f64, f64) = (116.0, 46.0);
+const STEP: (f64, f64) = (262.0, 122.0);
+/// Distance between streams that flow back, below the units.
 const LANE: f64 = 30.0;
-const MARGIN: f64 = 24.0;
+const MARGIN: f64 = 30.0;
+/// Share of its size at which a wide picture is scrolled rather than shrunk.
+const SMALLEST: f64 = 0.7;
+/// Points of a curve.
+const POINTS: u32 = 40;
+
+/// The path of a stream, points along it where its label may stand, and along the rest.
+struct Drawn {
+    path: String,
+    line: Vec<(f64, f64)>,
+    rest: Vec<(f64, f64)>,
+}
+
+/// A stream that flows on, as a cubic curve that is level at both ends.
+fn curve((x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> Drawn {
+    let bend = 0.5 * (x1 - x0).min(STEP.0 - BOX.0);
+    let at = |k: u32| {
+        let t = f64::from(k) / f64::from(POINTS);
+        let u = 1.0 - t;
+        let mix = |a: f64, b: f64, c: f64, d: f64| {
+            u * u * u * a + 3.0 * u * u * t * b + 3.0 * u * t * t * c + t * t * t * d
+        };
+        (mix(x0, x0 + bend, x1 - bend, x1), mix(y0, y0, y1, y1))
+    };
+    Drawn {
+        path: format!(
+            "M{x0:.1} {y0:.1} C{:.1} {y0:.1} {:.1} {y1:.1} {x1:.1} {y1:.1}",
+            x0 + bend,
+            x1 - bend
+        ),
+        line: (0..=POINTS).map(at).collect(),
+        rest: Vec::new(),
+    }
+}
+
+/// A stream that flows back, below the units.
+fn way_back((x0, y0): (f64, f64), (x1, y1): (f64, f64), y: f64, lane: f64) -> Drawn {
+    let (right, left) = (x0 + 14.0 + 6.0 * lane, x1 - 14.0 - 6.0 * lane);
+    let at = |k: u32| (right + f64::from(k) / f64::from(POINTS) * (left - right), y);
+    let upright = |x: f64, from: f64| {
+        (0..=POINTS).map(move |k| (x, from + f64::from(k) / f64::from(POINTS) * (y - from)))
+    };
+    Drawn {
+        rest: upright(right, y0).chain(upright(left, y1)).collect(),
+        path: format!("M{x0:.1} {y0:.1} H{right:.1} V{y:.1} H{left:.1} V{y1:.1} H{x1:.1}"),
+        line: (0..=POINTS).map(at).collect(),
+    }
+}
+
+/// Where the streams of a unit stand at its side, as shares of its height: by the rows of what is at their other ends, those that flow
+/// back below all others.
+fn shares(streams: &[usize], row: impl Fn(usize) -> usize, places: &Places) -> Vec<(usize, f64)> {
+    let mut order = streams.to_vec();
+    order.sort_by_key(|stream| (places.back[*stream], row(*stream)));
+    let count = order.len() as f64 + 1.0;
+    let order = order.into_iter().enumerate();
+    order
+        .map(|(place, stream)| (stream, (place as f64 + 1.0) / count))
+        .collect()
+}
 
 /// Units as boxes in columns; streams from left to right, those that flow back below the units.
 pub(super) fn draw(case: &PlantCase, series: &TimeTable, summary: &PlantSummary) -> String {
@@ -39,45 +99,38 @@ pub(super) fn draw(case: &PlantCase, series: &TimeTable, summary: &PlantSummary)
         )
     };
     let mut svg = format!(
-        "<figure class=\"wide\"><svg viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"Flowsheet\" \
-         style=\"max-width:{width:.0}px;width:100%;font-size:11px\">\
+        "<figure class=\"wide\" style=\"overflow-x:auto\"><svg viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"Flowsheet\" \
+         style=\"max-width:{width:.0}px;min-width:{:.0}px;width:100%;font-size:11px\">\
          <defs><marker id=\"head\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"9\" markerHeight=\"9\" \
-         markerUnits=\"userSpaceOnUse\" orient=\"auto\"><path d=\"M0 0 L8 4 L0 8 z\" fill=\"var(--line1)\"/></marker></defs>"
+         markerUnits=\"userSpaceOnUse\" orient=\"auto\"><path d=\"M0 0 L8 4 L0 8 z\" fill=\"var(--line1)\"/></marker></defs>",
+        SMALLEST * width
     );
-    let mut labels = String::new();
-    let mut lane = 0;
+    let (count, ends) = (flows.len(), |stream: usize| plant.ends_of(stream));
+    let (mut out, mut into) = (vec![0.5; count], vec![0.5; count]);
+    for unit in plant.units() {
+        let leaving: Vec<usize> = unit.leaving().collect();
+        for (stream, share) in shares(&leaving, |own| places.at[ends(own).1].1, &places) {
+            out[stream] = share;
+        }
+        for (stream, share) in shares(unit.entering(), |own| places.at[ends(own).0].1, &places) {
+            into[stream] = share;
+        }
+    }
+    let mut labels = Vec::new();
+    let mut lane = 0.0;
     for (stream, name) in plant.streams().iter().enumerate() {
-        let (from, to) = plant.ends_of(stream);
-        let share = |ports: usize, place: usize| (place as f64 + 1.0) / (ports as f64 + 1.0);
-        let leaving = plant.units()[from].leaving();
-        let out = share(leaving.len(), stream - leaving.start);
-        let entering = plant.units()[to].entering();
-        let own = entering.iter().position(|own| *own == stream);
-        let into = share(entering.len(), own.unwrap_or(0));
+        let (from, to) = ends(stream);
         let ((x0, y0), (x1, y1)) = (corner(from), corner(to));
-        let (x0, y0) = (x0 + BOX.0, y0 + out * BOX.1);
-        let (x1, y1) = (x1, y1 + into * BOX.1);
-        let (path, at) = if places.back[stream] {
-            lane += 1;
-            let y = units + 24.0 + LANE * f64::from(lane);
-            let right = x0 + 14.0 + 6.0 * f64::from(lane);
-            let left = x1 - 14.0 - 6.0 * f64::from(lane);
-            (
-                format!("M{x0:.1} {y0:.1} H{right:.1} V{y:.1} H{left:.1} V{y1:.1} H{x1:.1}"),
-                (0.5 * (left + right), y - 5.0),
-            )
-        } else {
-            let bend = 0.5 * (x1 - x0).min(STEP.0 - BOX.0);
-            (
-                format!(
-                    "M{x0:.1} {y0:.1} C{:.1} {y0:.1} {:.1} {y1:.1} {x1:.1} {y1:.1}",
-                    x0 + bend,
-                    x1 - bend
-                ),
-                // Where streams of one unit have parted, before those of others come in.
-                (x0 + 0.48 * (STEP.0 - BOX.0), y0 + 0.42 * (y1 - y0) - 6.0),
-            )
+        let start = (x0 + BOX.0, y0 + out[stream] * BOX.1);
+        let end = (x1, y1 + into[stream] * BOX.1);
+        let drawn = match places.back[stream] {
+            true => {
+                lane += 1.0;
+                way_back(start, end, units + 24.0 + LANE * lane, lane)
+            }
+            false => curve(start, end),
         };
+        let path = drawn.path;
         let thickness = match most > 0.0 {
             true => 1.0 + 4.0 * (flows[stream] / most).max(0.0).sqrt(),
             false => 1.0,
@@ -96,26 +149,19 @@ pub(super) fn draw(case: &PlantCase, series: &TimeTable, summary: &PlantSummary)
             false => String::new(),
         };
         let flow = format!("{} kg/s{sizes}", figure(flows[stream], 3));
-        let (x, y) = at;
-        let (first, second) = match places.back[stream] {
-            true => (y, None),
-            false => (y - 11.0, Some(y + 1.0)),
-        };
-        let halo = "paint-order=\"stroke\" stroke=\"var(--card, #fff)\" stroke-width=\"4\"";
-        let text = |y: f64, text: &str| {
-            format!(
-                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" fill=\"currentColor\" {halo}>{}</text>",
-                escape(text)
-            )
-        };
-        match second {
-            Some(second) => {
-                labels.push_str(&text(first, name));
-                labels.push_str(&text(second, &flow));
-            }
-            None => labels.push_str(&text(first, &format!("{name}: {flow}"))),
-        }
+        labels.push(Labelled {
+            line: drawn.line,
+            rest: drawn.rest,
+            text: match places.back[stream] {
+                true => vec![format!("{name}: {flow}")],
+                false => vec![name.clone(), flow],
+            },
+        });
     }
+    let boxes: Vec<Rectangle> = (0..plant.units().len())
+        .map(corner)
+        .map(|(x, y)| [x - 6.0, y - 3.0, x + BOX.0 + 6.0, y + BOX.1 + 3.0])
+        .collect();
     for (unit, own) in plant.units().iter().enumerate() {
         let (x, y) = corner(unit);
         let (middle, centre) = (x + 0.5 * BOX.0, y + 0.5 * BOX.1);
@@ -132,7 +178,22 @@ pub(super) fn draw(case: &PlantCase, series: &TimeTable, summary: &PlantSummary)
             case.kinds[unit]
         );
     }
-    svg.push_str(&labels);
+    for (label, [left, top, right, _]) in labels.iter().zip(placed(&labels, &boxes)) {
+        for (row, text) in labels_of(label) {
+            let _ = write!(
+                svg,
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"currentColor\" paint-order=\"stroke\" \
+                 stroke=\"var(--card, #fff)\" stroke-width=\"3\">{}</text>",
+                0.5 * (left + right),
+                top + 10.0 + 12.0 * row,
+                escape(text)
+            );
+        }
+    }
     svg.push_str("</svg></figure>");
     svg
+}
+
+fn labels_of(label: &Labelled) -> impl Iterator<Item = (f64, &String)> {
+    (0u32..).map(f64::from).zip(&label.text)
 }
