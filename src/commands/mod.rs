@@ -24,6 +24,7 @@ mod shell;
 mod signals;
 mod sweep;
 mod tune;
+mod tuning_line;
 
 use std::os::unix::process::CommandExt;
 use std::process::{self, ExitCode};

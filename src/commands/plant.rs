@@ -11,7 +11,7 @@ use super::continuation::{Recorded, begin_again};
 use super::failure::Failure;
 use super::shell::word;
 use super::signals::SignalThread;
-use super::tune::Tuning;
+use super::tuning_line::Tuning;
 use super::{check, compare, run, sweep};
 use crate::case::plant::{PlantCase, read_plant};
 use crate::exit;

@@ -13,6 +13,7 @@ use super::console::say;
 use super::continuation::Recorded;
 use super::failure::Failure;
 use super::shell::word;
+use super::tuning_line::Tuning;
 use crate::case::units::short;
 use crate::case::{kind_of, read_tuning};
 use crate::exit;
@@ -45,15 +46,6 @@ pub(super) struct Arguments {
     /// Tells nothing while it runs.
     #[arg(long)]
     pub(super) quiet: bool,
-}
-
-/// What one tuning needs.
-pub(super) struct Tuning<'a> {
-    pub case: &'a Path,
-    pub set: &'a [String],
-    pub out: Option<&'a Path>,
-    pub resume: bool,
-    pub quiet: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {

@@ -445,7 +445,7 @@ fn a_second_ctrl_c_ends_a_run_whose_solver_hangs() {
     signal(coordinator, Signal::INT);
     let (code, taken) = end_of(&mut run);
     println!("ended {taken:?} after the second Ctrl-C");
-    assert_eq!(code, Some(75));
+    assert_eq!(code, Some(130));
     assert!(taken < LIMIT, "{taken:?}");
     assert_clean(coordinator, &peers);
 }
