@@ -6,6 +6,7 @@ use std::sync::Arc;
 use calcine_wire::SolverNetwork;
 
 use super::failure::Failure;
+use super::tuning_line::Tuning;
 use super::{check, compare, plant, report, run, sweep, tune};
 use crate::case::kind_of;
 use crate::exit;
@@ -61,7 +62,7 @@ static COMMANDS: &[KindCommands] = &[
         kind: "tuning",
         run: |arguments, case, _, _| {
             run::use_threads(arguments.threads.map(usize::from))?;
-            tune::tune(&tune::Tuning {
+            tune::tune(&Tuning {
                 case,
                 set: &arguments.set,
                 out: arguments.out.as_deref(),
