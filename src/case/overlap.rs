@@ -83,10 +83,13 @@ pub(super) fn deepest(
     let worst = deep.clone().max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
     let [a, b] = worst.particles.map(|row| setup.id[row]);
     Some(format!(
-        "{} pairs of particles overlap by more than {DEEP_CONTACT} of the smaller radius at the start, particles {a} and {b} by {}: contacts \
-         drive them apart at once; place them farther apart, or check the unit of their diameters",
-        deep.count(),
-        short3(depth(worst))
+        "particles overlap by more than {DEEP_CONTACT} of the smaller radius at the start, {a} and {b} by {}{}: contacts drive them apart \
+         at once; place them farther apart, or check the unit of their diameters",
+        short3(depth(worst)),
+        match deep.count() {
+            1 => String::new(),
+            count => format!(" and {} other pairs", count - 1),
+        }
     ))
 }
 

@@ -108,7 +108,10 @@ fn binary(bytes: &[u8]) -> Result<Option<Vec<[Vec3; 3]>>, StlError> {
         return Ok(None);
     };
     let count = u32::from_le_bytes(count) as usize;
-    if bytes.len() != HEAD + TRIANGLE * count {
+    let whole = HEAD + TRIANGLE * count;
+    // Some programs append what is theirs.
+    let longer = bytes.len() > whole && count > 0 && !bytes.starts_with(b"solid");
+    if bytes.len() != whole && !(longer && bytes.contains(&0)) {
         // Text has no zero bytes; the head of a binary file is filled with them.
         return match bytes.contains(&0) {
             true => Err(StlError::CutShort {
@@ -123,7 +126,7 @@ fn binary(bytes: &[u8]) -> Result<Option<Vec<[Vec3; 3]>>, StlError> {
         f64::from(f32::from_le_bytes(four))
     };
     let mut triangles = Vec::with_capacity(count);
-    for (index, record) in bytes[HEAD..].chunks_exact(TRIANGLE).enumerate() {
+    for (index, record) in bytes[HEAD..whole].chunks_exact(TRIANGLE).enumerate() {
         let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
         if values.iter().any(|value| !value.is_finite()) {
             return Err(StlError::NotFinite {
@@ -254,6 +257,26 @@ mod tests {
         assert_eq!(
             read(&path, 1.0).unwrap_err().to_string(),
             "states 5 triangles, and has 3: it was cut short, or is damaged"
+        );
+    }
+
+    #[test]
+    fn what_a_program_appends_to_a_binary_file_is_passed_over_and_words_may_be_in_capitals() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.stl");
+        let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let mut bytes = binary_of(&[good; 2]);
+        bytes.extend(b"made by a scanner");
+        std::fs::write(&path, bytes).unwrap();
+        assert_eq!(read(&path, 1.0).unwrap().triangles.len(), 2);
+        let text = "SOLID X\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\n";
+        std::fs::write(&path, format!("{text}ENDSOLID X\n")).unwrap();
+        assert_eq!(read(&path, 1.0).unwrap().triangles.len(), 1);
+        std::fs::write(&path, text).unwrap();
+        let told = read(&path, 1.0).unwrap_err().to_string();
+        assert!(
+            told.contains("no `endsolid` to the `solid` of line 1"),
+            "{told}"
         );
     }
 }

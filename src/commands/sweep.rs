@@ -205,10 +205,18 @@ fn axis(text: &str) -> Result<Vec<String>, Failure> {
             part.push(letter);
         }
     }
-    Ok(parts
-        .into_iter()
-        .map(|value| format!("{}={}", key.trim(), value.trim()))
-        .collect())
+    let settings = parts.into_iter();
+    let settings = settings.map(|value| format!("{}={}", key.trim(), value.trim()));
+    let settings: Vec<String> = settings.collect();
+    let twice = |(place, setting): (usize, &String)| settings[..place].contains(setting);
+    if let Some((place, _)) = settings.iter().enumerate().find(|one| twice(*one)) {
+        let message = format!(
+            "`--set {text}` names `{}` twice: each value is a run and a folder of its own",
+            settings[place]
+        );
+        return Err(Failure::new(exit::CASE, message));
+    }
+    Ok(settings)
 }
 
 /// Every combination of one value from each axis, the last axis changing fastest.
@@ -372,6 +380,7 @@ mod tests {
         assert_eq!(split("a=[1,2],[3]"), ["a=[1,2]", "a=[3]"]);
         assert_eq!(split("a=\"x,y\""), ["a=\"x,y\""]);
         assert!(axis("nothing").is_err());
+        assert!(axis("a=1,2,1").is_err());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use ::csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::sheet::{Fault, Row, Sheet, number};
+use super::sheet::{Fault, Row, Sheet, is_read, number};
 
 pub(super) fn sheet(text: &str) -> Result<Sheet, Fault> {
     let mut reader = ReaderBuilder::new()
@@ -50,8 +50,13 @@ fn row(sheet: &mut Sheet, record: &StringRecord, line: usize) -> Result<(), Faul
         );
         return Err((Some(Row::Line(line)), what));
     }
-    for ((_, column), word) in sheet.columns.iter_mut().zip(record) {
-        column.push(number(word, line)?);
+    for ((name, column), word) in sheet.columns.iter_mut().zip(record) {
+        let value = number(word, line);
+        // Columns that are not read may hold words.
+        column.push(match is_read(name) {
+            true => value?,
+            false => value.unwrap_or(f64::NAN),
+        });
     }
     sheet.lines.push(line);
     Ok(())
@@ -60,6 +65,13 @@ fn row(sheet: &mut Sheet, record: &StringRecord, line: usize) -> Result<(), Faul
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_in_a_column_that_is_not_read_are_passed_over() {
+        let sheet = sheet("x,y,z,name\n1,2,3,quartz\n").unwrap();
+        assert_eq!(sheet.columns[2], ("z".into(), vec![3.0]));
+        assert!(sheet.columns[3].1[0].is_nan());
+    }
 
     #[test]
     fn empty_lines_carriage_returns_quotes_and_a_byte_order_mark_leave_lines_and_values() {

@@ -97,8 +97,8 @@ const DIAMETER: [&str; 1] = ["diameter"];
 
 const RADIUS: [&str; 1] = ["radius"];
 
-/// Share by which a diameter and twice a radius differ where programs write six digits.
-const SAME_SIZE: f64 = 1e-5;
+/// Share by which a diameter and twice a radius may differ where each is rounded.
+const SAME_SIZE: f64 = 1e-2;
 
 const TEMPERATURE: [&str; 3] = ["temperature", "f_temp", "f_temp[0]"];
 
@@ -135,7 +135,7 @@ impl Sheet {
         }
     }
 
-    /// Diameters must be twice the radii where a file states both, up to the digits that programs write.
+    /// Diameters must be twice the radii where a file states both, up to what rounding leaves.
     fn check_sizes(&self, order: &[usize]) -> Result<(), Fault> {
         let both = (self.column(&DIAMETER), self.column(&RADIUS));
         let (Some(diameter), Some(radius)) = both else {
@@ -278,6 +278,16 @@ impl Sheet {
         };
         order.into_iter().map(entry).collect()
     }
+}
+
+/// True of a column that is read.
+pub(super) fn is_read(name: &str) -> bool {
+    let vectors = VELOCITY.iter().chain(&SPIN).flatten();
+    let mut all = AXES.iter().flatten().chain(vectors);
+    all.any(|other| *other == name)
+        || [&DIAMETER[..], &RADIUS, &TEMPERATURE, &TYPE, &ID]
+            .iter()
+            .any(|names| names.contains(&name))
 }
 
 /// A number of a text file.
