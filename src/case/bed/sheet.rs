@@ -194,6 +194,9 @@ impl Sheet {
             let unnamed = names.iter().all(|name| name.is_empty());
             let what = match names[..] {
                 [] => "it is empty; its first line names the columns: x, y and z (in m)".into(),
+                [one] if one.contains([';', '\t', ' ']) => {
+                    "its first line has no comma; separate columns by commas, and write decimals with a point".into()
+                }
                 _ if unnamed => "its first line names no column; write x, y and z (in m)".into(),
                 _ => format!(
                     "it has the columns {}, and needs x, y and z (in m)",
