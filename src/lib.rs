@@ -6,6 +6,7 @@ pub mod commands;
 pub mod compare;
 mod error_chain;
 pub mod exit;
+mod hex;
 pub mod laws;
 pub mod mechanism;
 pub mod plant;

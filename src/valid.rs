@@ -9,7 +9,6 @@ use crate::assembly::{
 };
 use crate::case::model::Case;
 use crate::case::packed::BedPacking;
-use crate::case::temperature_cautions::of_files;
 use crate::case::warnings::warnings;
 use crate::case::{CaseErrors, located, read_with, settle};
 use crate::laws::LawCatalogue;
@@ -66,10 +65,12 @@ impl ValidCase {
         let packing = prepared.packing(&case);
         let packing = packing.map_err(|error| placed(&case, error))?;
         results::fits(&case, &prepared.mesh)?;
-        case.warnings = warnings(&case, &prepared.mesh, &prepared.particles, &packing);
-        let population = &prepared.particles.population;
-        case.warnings
-            .extend(of_files(&case, population, &prepared.temperature));
+        case.warnings = warnings(
+            &case,
+            &prepared.mesh,
+            (&prepared.particles, &prepared.temperature),
+            &packing,
+        );
         Ok(Self {
             case,
             prepared,

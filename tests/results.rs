@@ -55,6 +55,35 @@ fn rows_and_snapshots_fall_on_the_first_window_at_or_after_each_multiple() {
 }
 
 #[test]
+fn a_balance_that_is_open_at_the_end_is_warned_of() {
+    for (mass, energy, told) in [
+        (0.995e-3, 0.995e-3, None),
+        (1.005e-3, 0.0, Some(1.005e-3)),
+        (1.005e-3, 0.16, Some(0.16)),
+    ] {
+        let scratch = tempfile::tempdir().unwrap();
+        let out = scratch.path().join("out");
+        let (case, mut world) = (fake::case(), fake::World::new());
+        let mut recorder = Recorder::create(&case, fake::info(), &out, None).unwrap();
+        recorder.start(&world.moment()).unwrap();
+        while world.clocks.process < case.time.end {
+            world.step(&case);
+            recorder.window(&world.moment()).unwrap();
+        }
+        (world.ledger.mass, world.ledger.energy) = Default::default();
+        world.ledger.mass.book(-2.0 * mass, 2.0);
+        world.ledger.energy.book(3.0 * energy, 3.0);
+        recorder.finish(&world.moment()).unwrap();
+        let warnings = Summary::read(&out).unwrap().warnings;
+        let found = warnings.get("open_balance");
+        assert_eq!(found.is_some(), told.is_some(), "{warnings:?}");
+        if let (Some(found), Some(told)) = (found, told) {
+            assert!((found.worst / told - 1.0).abs() < 1e-12, "{found:?}");
+        }
+    }
+}
+
+#[test]
 fn the_summary_has_the_stable_names_of_the_design() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("out");

@@ -4,10 +4,13 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use calcine::results::read::Series;
+use rustix::process::Signal;
 
 use crate::support::program::{self, shipped};
+use crate::support::stopped::Stopped;
 use crate::support::{results_equal, stopped};
 
 /// Runs a case without interruption and without checkpoints, then stops it after each number of rows of its series, the first
@@ -37,6 +40,31 @@ fn a_bed_that_settles_goes_on_alike() {
         "particles[0].place.region.to=40 mm",
     ];
     goes_on_alike(&shipped("settled-bed"), &set, "30 ms", [1, 75, 50]);
+}
+
+/// A terminal that closes leaves a checkpoint; not to a run that was started to live on, as by `nohup`.
+#[test]
+fn a_run_whose_terminal_closes_leaves_a_checkpoint_unless_it_ignores_that() {
+    let directory = tempfile::tempdir().unwrap();
+    for (name, ended) in [
+        ("closed", Stopped::Checkpointed),
+        ("ignored", Stopped::AtItsEnd),
+    ] {
+        let out = directory.path().join(name);
+        let set = ["time.end=0.2 s", "output.every=0.04 s"];
+        let run = program::command(&shipped("settled-bed"), &out, &[], &set);
+        let run = match ended {
+            Stopped::AtItsEnd => {
+                let mut shell = Command::new("sh");
+                shell.args(["-c", "trap '' HUP; exec \"$@\"", "sh"]);
+                shell.arg(run.get_program()).args(run.get_args());
+                shell
+            }
+            _ => run,
+        };
+        let found = stopped::stop_by(Signal::HUP, run, |_| stopped::rows(&out) >= 3);
+        assert_eq!(found, ended, "{name}");
+    }
 }
 
 /// Particles that react and do not settle with their gas: the run stops at its last commit between two attempts, and begins

@@ -28,6 +28,8 @@ struct Told {
     /// Files of a template for OpenFOAM.
     #[serde(default)]
     template: BTreeMap<String, String>,
+    /// What to do about it, with `refused`.
+    help: Option<String>,
     /// Messages that refuse it beside `refused`, all at once.
     #[serde(default)]
     refused_too: Vec<String>,
@@ -50,6 +52,18 @@ fn messages(error: &InvalidCase) -> Vec<String> {
             problems.map(|one| one.message.clone()).collect()
         }
         other => vec![other.to_string()],
+    }
+}
+
+/// What helps against them.
+fn helps(error: &InvalidCase) -> Vec<String> {
+    match error {
+        InvalidCase::File(errors) => errors
+            .problems()
+            .iter()
+            .map(|one| one.help.clone())
+            .collect(),
+        _ => Vec::new(),
     }
 }
 
@@ -83,8 +97,8 @@ fn every_input_is_told_in_its_words() {
         let path = folder.path().join("case.toml");
         fs::write(&path, text).unwrap();
         let found = match ValidCase::open(&path, &set) {
-            Ok(valid) => (false, valid.case.warnings),
-            Err(error) => (true, messages(&error)),
+            Ok(valid) => (false, valid.case.warnings, Vec::new()),
+            Err(error) => (true, messages(&error), helps(&error)),
         };
         let place = folder.path().display().to_string();
         let begins = |message: &String, words: &String| {
@@ -94,7 +108,11 @@ fn every_input_is_told_in_its_words() {
         let as_wanted = match (&one.refused, &one.warned) {
             (Some(words), None) => {
                 let told = |words: &String| found.1.iter().any(|told| begins(told, words));
-                found.0 && told(words) && one.refused_too.iter().all(told)
+                let helped = one
+                    .help
+                    .as_ref()
+                    .is_none_or(|words| found.2.contains(words));
+                found.0 && told(words) && one.refused_too.iter().all(told) && helped
             }
             (None, Some(words)) if words.is_empty() => !found.0 && found.1.is_empty(),
             (None, Some(words)) => !found.0 && found.1.iter().any(|told| begins(told, words)),

@@ -494,6 +494,8 @@ impl Particles for LinkedParticles {
         received.impulse.clone_from(&self.attempt.impulse);
         received.columns.clone_from(&self.attempt.further);
         received.acted = self.attempt.acted;
+        // Nothing on the wire tells of them.
+        received.deep_contacts = None;
         // Without walls and held particles nothing else acts on a free one.
         received.support = match self.alone {
             true => Some(Vec3::zeros()),

@@ -119,12 +119,17 @@ fn push() -> ParticlePush {
 }
 
 fn step(particles: &mut LinkedParticles, supervisor: &Supervisor, index: u64) -> Vec<Vec3> {
-    let mut received = ParticleReceived::default();
+    // What is left of a window in which the bed was held.
+    let mut received = ParticleReceived {
+        deep_contacts: Some(Default::default()),
+        ..ParticleReceived::default()
+    };
     particles
         .start(&window(index), &VoidFractions::default(), &push())
         .unwrap();
     particles.finish(supervisor, &mut received).unwrap();
     particles.commit().unwrap();
+    assert_eq!(received.deep_contacts, None, "the coordinator looks");
     received.impulse
 }
 

@@ -8,6 +8,7 @@ use calcine_coupler::motion::WallShape;
 use sha2::{Digest, Sha256};
 
 use super::model::{Case, MeshSpec, PlacementSpec};
+use crate::hex::hex;
 
 /// Folders of a template or a start for OpenFOAM that are looked through, with all that is in them.
 const OPENFOAM: [&str; 3] = ["0", "constant", "system"];
@@ -28,7 +29,8 @@ pub(super) fn sums(case: &Case) -> BTreeMap<String, String> {
         }
     }
     for (index, file) in case.gas_files.iter().enumerate() {
-        files.push((format!("gas, file {}", index + 1), file.clone()));
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        files.push((format!("gas/{}/{name}", index + 1), file.clone()));
     }
     let openfoam = [
         ("openfoam.template", &case.openfoam.template),
@@ -93,10 +95,4 @@ pub(super) fn extended(hash: String, sums: &BTreeMap<String, String>) -> String 
         digest.update(sum.as_bytes());
     }
     hex(digest.finalize())
-}
-
-/// Bytes in hexadecimal digits.
-pub(super) fn hex(bytes: impl IntoIterator<Item = u8>) -> String {
-    let digits = bytes.into_iter().map(|byte| format!("{byte:02x}"));
-    digits.collect()
 }

@@ -47,7 +47,7 @@ mod stl;
 mod surface_holes;
 mod syntax;
 mod table;
-pub mod temperature_cautions;
+mod temperature_cautions;
 mod time_cautions;
 mod tolerance;
 mod touching;
@@ -75,6 +75,7 @@ pub use step::settle;
 use model::Case;
 use parse::{parse_as, text_of};
 
+use crate::hex::hex;
 use crate::laws::LawCatalogue;
 use crate::tuning::case::TuningCase;
 
@@ -132,6 +133,6 @@ pub fn parse_tuning(path: &Path, text: &str, set: &[String]) -> Result<TuningCas
     for file in &case.files {
         digest.update(std::fs::read(file).unwrap_or_default());
     }
-    case.hash = input_files::hex(digest.finalize());
+    case.hash = hex(digest.finalize());
     Ok(case)
 }

@@ -11,6 +11,7 @@ use super::problem::{CaseErrors, Problem};
 use super::set;
 use super::syntax::{one, syntax};
 use super::table::{self, Problems, TableReader};
+use crate::hex::hex;
 use crate::laws::LawCatalogue;
 
 /// Version of the format that the readers know.
@@ -109,10 +110,7 @@ fn blamed(problem: &Problem, key: &str) -> bool {
 fn hash(table: &dyn toml_edit::TableLike) -> String {
     let mut text = String::new();
     canonical(&mut text, "", table);
-    Sha256::digest(text.as_bytes())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hex(Sha256::digest(text.as_bytes()))
 }
 
 fn canonical(text: &mut String, place: &str, table: &dyn toml_edit::TableLike) {

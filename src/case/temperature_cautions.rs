@@ -59,7 +59,7 @@ pub(super) fn all(case: &Case) -> Vec<String> {
 }
 
 /// A warning of strange temperatures that files give particles, one value in K for each with its population.
-pub fn of_files(case: &Case, population: &[u32], temperature: &[f64]) -> Option<String> {
+pub(super) fn of_files(case: &Case, population: &[u32], temperature: &[f64]) -> Option<String> {
     let stated: Vec<Stated> = case
         .particles
         .iter()

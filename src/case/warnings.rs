@@ -9,13 +9,16 @@ use super::flow_numbers::FlowNumbers;
 use super::model::Case;
 use super::packed::BedPacking;
 use super::splitting::Splitting;
-use super::{buoyancy, contacts, flow_time, mesh_shape, overlap, patch_cautions, size_cautions};
+use super::{
+    buoyancy, contacts, flow_time, mesh_shape, overlap, patch_cautions, size_cautions,
+    temperature_cautions,
+};
 
-/// Warnings about a case with its mesh and particles, in a fixed order, each once.
+/// Warnings about a case with its mesh, and its particles with their temperatures in K, in a fixed order, each once.
 pub fn warnings(
     case: &Case,
     mesh: &Mesh,
-    setup: &ParticleSetup,
+    (setup, temperature): (&ParticleSetup, &[f64]),
     packing: &BedPacking,
 ) -> Vec<String> {
     let void_fraction = packing.void_fraction;
@@ -24,6 +27,11 @@ pub fn warnings(
         .chain(flow_time::warning(case, mesh, setup, void_fraction))
         .collect();
     all.extend(cautions(case));
+    all.extend(temperature_cautions::of_files(
+        case,
+        &setup.population,
+        temperature,
+    ));
     all.extend(overlap::deepest(case, setup, mesh.periodicity()));
     all.extend(patch_cautions::columns(case, mesh));
     all.extend(size_cautions::pores(case));

@@ -86,7 +86,8 @@ pub(super) fn execute(
     }
     let progress = Box::new(Progress::new(case, settings.progress));
     let mut simulation = builder.start_prepared(case, prepared, vec![progress])?;
-    if let Some(recorded) = &settings.recorded {
+    // A run that begins has it from its first moment on; one that is refused a resume keeps what it had.
+    if let Some(recorded) = settings.recorded.as_ref().filter(|_| settings.resume) {
         recorded.write(out)?;
     }
     for note in simulation.notes() {

@@ -9,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use sha2::{Digest, Sha256};
 
 use crate::case::plant::{PlantCase, PlantTuningSpec};
+use crate::hex::hex;
 use crate::results::{ResultsError, files};
 
 /// Name of the table of trials.
@@ -45,8 +46,7 @@ pub(crate) fn hash_of(case: &PlantCase, spec: &PlantTuningSpec) -> String {
     digest.update(case.hash.as_bytes());
     // Of the measurements, which are files of their own: every number to its bits.
     digest.update(format!("{spec:?}").as_bytes());
-    let bytes = digest.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(digest.finalize())
 }
 
 /// The hash of the case whose trials a folder holds.

@@ -14,6 +14,7 @@ use super::probe::Site;
 use super::quantities::{evaluate, statistic};
 use super::{ResultsError, SERIES, inertial_number, sheet};
 use crate::case::model::{Case, MotionKind, MotionSpec, Statistic};
+use crate::hex::hex;
 
 /// Up to so many particles each has a column of its own; beyond, the series holds statistics.
 pub(super) const TRACKED_PARTICLES: usize = 1000;
@@ -280,7 +281,7 @@ impl SeriesMark {
                 let fact = format!("it has {} bytes in place of {}", text.len(), self.bytes);
                 ResultsError::behind(&path, fact)
             })?;
-        match digits(Sha256::new_with_prefix(begin)) == self.sha256 {
+        match hex(Sha256::new_with_prefix(begin).finalize()) == self.sha256 {
             true => Ok(()),
             false => Err(ResultsError::behind(&path, "what was in it is changed")),
         }
@@ -293,11 +294,6 @@ impl SeriesMark {
         file.and_then(|file| file.set_len(self.bytes))
             .map_err(ResultsError::file("cut", &path))
     }
-}
-
-fn digits(hasher: Sha256) -> String {
-    let bytes = hasher.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The file `series.csv`.
@@ -362,7 +358,7 @@ impl Table {
             .map_err(ResultsError::file("flush", &self.path))?;
         Ok(SeriesMark {
             bytes: self.bytes,
-            sha256: digits(self.hasher.clone()),
+            sha256: hex(self.hasher.clone().finalize()),
         })
     }
 

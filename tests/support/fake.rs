@@ -225,7 +225,7 @@ pub struct World {
     pub clocks: Clocks,
     windows: u64,
     window: Option<Window>,
-    ledger: Ledger,
+    pub ledger: Ledger,
     bed: Bed,
     gas: Gas,
     id: Vec<u64>,

@@ -29,12 +29,17 @@ pub enum Stopped {
     AtItsEnd,
     /// It left a checkpoint.
     Checkpointed,
-    /// It had not begun to listen to signals: SIGTERM ended it, and what was there before is what there is.
+    /// It had not begun to listen to signals: the signal ended it, and what was there before is what there is.
     BeforeItBegan,
 }
 
 /// Starts a run and stops it as soon as `due` says so, told how long it runs.
-pub fn stop(mut command: Command, due: impl Fn(Duration) -> bool) -> Stopped {
+pub fn stop(command: Command, due: impl Fn(Duration) -> bool) -> Stopped {
+    stop_by(Signal::TERM, command, due)
+}
+
+/// The same by a signal.
+pub fn stop_by(by: Signal, mut command: Command, due: impl Fn(Duration) -> bool) -> Stopped {
     command.stdin(Stdio::null()).stdout(Stdio::null());
     let mut run = command.stderr(Stdio::piped()).spawn().unwrap();
     let begun = Instant::now();
@@ -44,7 +49,7 @@ pub fn stop(mut command: Command, due: impl Fn(Duration) -> bool) -> Stopped {
     }
     if run.try_wait().unwrap().is_none() {
         let pid = Pid::from_raw(run.id().cast_signed()).unwrap();
-        kill_process(pid, Signal::TERM).unwrap();
+        kill_process(pid, by).unwrap();
     }
     let output = run.wait_with_output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
@@ -52,7 +57,7 @@ pub fn stop(mut command: Command, due: impl Fn(Duration) -> bool) -> Stopped {
     match (status.code(), status.signal()) {
         (Some(0), _) => Stopped::AtItsEnd,
         (Some(CHECKPOINTED), _) => Stopped::Checkpointed,
-        (None, Some(signal)) if signal == Signal::TERM.as_raw() => Stopped::BeforeItBegan,
+        (None, Some(signal)) if signal == by.as_raw() => Stopped::BeforeItBegan,
         _ => panic!("{status}: {told}"),
     }
 }

@@ -53,7 +53,7 @@ impl Dictionary {
     /// Reads a text.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         let mut tokens = tokens(text)?.into_iter().peekable();
-        dictionary(&mut tokens, &[])
+        dictionary(&mut tokens, None, 0)
     }
 
     /// The entry of a keyword: the last one, as OpenFOAM takes it.
@@ -81,25 +81,27 @@ impl Dictionary {
     }
 }
 
-/// Entries up to the brace that closes them, or the end of the file; `opened`: the lines of the braces that are open.
+/// Entries up to the brace that closes them, or the end of the file; `opened`: the line of the
+/// brace that is open, one of `depth`.
 fn dictionary(
     tokens: &mut Peekable<IntoIter<(usize, Token)>>,
-    opened: &[usize],
+    opened: Option<usize>,
+    depth: usize,
 ) -> Result<Dictionary, Fault> {
     let mut found = Dictionary::default();
-    if let (DEEPEST.., Some(&line)) = (opened.len(), opened.last()) {
+    if let Some(line) = opened.filter(|_| depth > DEEPEST) {
         let what = format!("dictionaries are nested more than {DEEPEST} deep");
         return Err((line, what));
     }
     loop {
         let Some((line, token)) = tokens.next() else {
-            return match opened.last() {
+            return match opened {
                 None => Ok(found),
-                Some(&line) => Err((line, "the brace that opens here is never closed".into())),
+                Some(line) => Err((line, "the brace that opens here is never closed".into())),
             };
         };
         match token {
-            Token::Close('}') if !opened.is_empty() => return Ok(found),
+            Token::Close('}') if opened.is_some() => return Ok(found),
             Token::Close(bracket) => {
                 return Err((line, format!("`{bracket}` closes nothing")));
             }
@@ -114,7 +116,7 @@ fn dictionary(
                 list(tokens, bracket, line)?;
             }
             Token::Word(keyword) => {
-                let value = value(tokens, &keyword, line, opened)?;
+                let value = value(tokens, &keyword, line, depth)?;
                 // A variable alone brings what it stands for.
                 found.open |= keyword.starts_with('$');
                 found.entries.push(Entry {
@@ -149,7 +151,7 @@ fn value(
     tokens: &mut Peekable<IntoIter<(usize, Token)>>,
     keyword: &str,
     line: usize,
-    opened: &[usize],
+    depth: usize,
 ) -> Result<Value, Fault> {
     let mut words = Vec::new();
     loop {
@@ -164,8 +166,7 @@ fn value(
         match token {
             Token::Semicolon => return Ok(Value::Words(words)),
             Token::Open('{') if words.is_empty() => {
-                let opened = [opened, &[at]].concat();
-                return dictionary(tokens, &opened).map(Value::Dictionary);
+                return dictionary(tokens, Some(at), depth + 1).map(Value::Dictionary);
             }
             Token::Open(bracket) => words.extend(list(tokens, bracket, at)?),
             Token::Word(word) => words.push(word),

@@ -85,7 +85,7 @@ impl Plant {
         let fine: Vec<f64> = scales.iter().map(|scale| FINE * scale).collect();
         for iteration in 0..MOST_ITERATIONS {
             // Round-off is reached when the residual no longer falls.
-            if residual < 1e-13 || (residual < 1e-11 && stalled >= 2) {
+            if residual < 1e-15 || (residual < 1e-11 && stalled >= 2) {
                 return Ok(SteadyState {
                     unknowns: y,
                     flows: work,

@@ -17,6 +17,7 @@ use crate::case::keys::{KINDS, kind_named};
 use crate::case::parse::{FORMAT, parse_as, text_of};
 use crate::case::problem::CaseErrors;
 use crate::case::table::TableReader;
+use crate::hex::hex;
 use crate::laws::LawCatalogue;
 
 /// Reads and checks the case of a plant with `--set key=value` applied; all its errors at once.
@@ -88,8 +89,7 @@ fn with_beds(case: &PlantCase) -> String {
     for bed in &case.beds {
         digest.update(bed.hash.as_bytes());
     }
-    let bytes = digest.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(digest.finalize())
 }
 
 /// What a file is read with.
