@@ -68,7 +68,11 @@ impl ValidCase {
         case.warnings = warnings(
             &case,
             &prepared.mesh,
-            (&prepared.particles, &prepared.temperature),
+            (
+                &prepared.particles,
+                &prepared.temperature,
+                &prepared.notes,
+            ),
             &packing,
         );
         Ok(Self {

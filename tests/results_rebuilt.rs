@@ -45,6 +45,14 @@ fn log(out: &Path) -> String {
 
 const ANEW: &str = "results.h5 is made anew from series.csv";
 
+/// Changes one bit in the middle of a file.
+fn flip(path: &Path) {
+    let mut bytes = fs::read(path).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    fs::write(path, bytes).unwrap();
+}
+
 #[test]
 fn results_that_were_left_in_order_are_taken_others_are_made_anew_to_the_bit() {
     let directory = tempfile::tempdir().unwrap();
@@ -66,6 +74,7 @@ fn results_that_were_left_in_order_are_taken_others_are_made_anew_to_the_bit() {
         (2, true, |out| {
             fs::remove_file(out.join("results.h5")).unwrap()
         }),
+        (3, true, |out| flip(&out.join("results.h5"))),
     ] {
         let out = directory.path().join(format!("out-{number}"));
         stop(&out);
@@ -122,20 +131,18 @@ fn results_that_a_checkpoint_counts_on_and_that_are_gone_are_named_and_nothing_i
         "particles_0001.vtp is not as the run left it",
         "it is missing",
     ]);
-    // A snapshot that was cut short, where results.h5 is made anew from it.
     let bytes = fs::read(&kept).unwrap();
-    fs::write(&snapshot, &bytes[..bytes.len() - 200]).unwrap();
-    fs::write(out.join("results.h5"), "torn").unwrap();
     let another = [
         "particles_0001.vtp is not as the run left it",
         "it has another content than was written",
     ];
+    // One bit of a number that is changed, where results.h5 is whole.
+    fs::write(&snapshot, &bytes).unwrap();
+    flip(&snapshot);
     refused(&another);
-    // One bit of a number that is changed, and another snapshot in its place.
-    let mut changed = bytes.clone();
-    let middle = bytes.len() / 2;
-    changed[middle] ^= 0x10;
-    fs::write(&snapshot, &changed).unwrap();
+    fs::write(out.join("results.h5"), "torn").unwrap();
+    refused(&another);
+    fs::write(&snapshot, &bytes[..bytes.len() - 200]).unwrap();
     refused(&another);
     fs::copy(out.join("particles/particles_0000.vtp"), &snapshot).unwrap();
     refused(&another);

@@ -34,6 +34,8 @@ pub struct PreparedCase {
     pub particles: ParticleSetup,
     /// Their temperatures in K.
     pub temperature: Vec<f64>,
+    /// What files of particles state that does not count.
+    pub notes: Vec<String>,
     /// Mean diameter in m of the case's particles.
     mean_diameter: f64,
 }
@@ -51,6 +53,7 @@ impl PreparedCase {
         let InitialParticles {
             mut setup,
             temperature,
+            notes,
         } = particles(case, mesh.periodicity())?;
         fit_between_walls(case, &mesh, &setup)?;
         setup.motion = parcels::motion_of(case, &mesh, &setup)?;
@@ -61,6 +64,7 @@ impl PreparedCase {
             mean_diameter: 2.0 * radii.iter().sum::<f64>() / radii.len() as f64,
             particles: setup,
             temperature,
+            notes,
         })
     }
 

@@ -20,6 +20,7 @@ mod mesh_shape;
 mod meshing;
 pub mod model;
 mod moving;
+mod other_density;
 mod overlap;
 pub mod packed;
 mod parcel_wall_error;

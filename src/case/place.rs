@@ -12,6 +12,7 @@ use super::model::{
     Case, MeshSpec, MotionSpec, PackingSection, PlacementSpec, Population, RandomAmount,
 };
 use super::overlap;
+use super::other_density;
 use super::place_error::PlaceError;
 use super::units::shown;
 use crate::laws;
@@ -23,6 +24,8 @@ pub struct InitialParticles {
     pub setup: ParticleSetup,
     /// Temperatures in K.
     pub temperature: Vec<f64>,
+    /// What their files state that does not count.
+    pub notes: Vec<String>,
 }
 
 /// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest,
@@ -35,9 +38,11 @@ pub fn particles(case: &Case, periodicity: &Periodicity) -> Result<InitialPartic
         let (factor, _) = case.time.acceleration.at(Ticks::ZERO);
         let velocity = factor * population.velocity;
         let spheres =
-            spheres(case, population, periodicity).map_err(|cause| PlaceError::Population {
-                index: index as usize,
-                cause: Box::new(cause),
+            spheres(case, population, periodicity, &mut placed.notes).map_err(|cause| {
+                PlaceError::Population {
+                    index: index as usize,
+                    cause: Box::new(cause),
+                }
             })?;
         for sphere in spheres {
             setup.id.push(setup.id.len() as u64 + 1);
@@ -110,6 +115,7 @@ fn spheres(
     case: &Case,
     population: &Population,
     periodicity: &Periodicity,
+    notes: &mut Vec<String>,
 ) -> Result<Vec<Sphere>, PlaceError> {
     let failed = |cause| PlaceError::Packing {
         name: population.name.clone(),
@@ -204,6 +210,8 @@ fn spheres(
             // What is held has no velocity, whatever it had where the file was written.
             let moves = population.motion != MotionSpec::Frozen;
             let mut made = Vec::with_capacity(entries.len());
+            let sized = entries.iter().zip(&diameters);
+            notes.extend(other_density::told(case, population, path, sized));
             for (entry, drawn) in entries.into_iter().zip(diameters) {
                 let centre = periodicity.wrap(entry.centre);
                 if let Some(fact) = outside(&case.mesh, &centre) {

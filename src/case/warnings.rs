@@ -14,11 +14,12 @@ use super::{
     temperature_cautions,
 };
 
-/// Warnings about a case with its mesh, and its particles with their temperatures in K, in a fixed order, each once.
+/// Warnings about a case with its mesh, and its particles with their temperatures in K and what was noted of their files, in a fixed
+/// order, each once.
 pub fn warnings(
     case: &Case,
     mesh: &Mesh,
-    (setup, temperature): (&ParticleSetup, &[f64]),
+    (setup, temperature, notes): (&ParticleSetup, &[f64], &[String]),
     packing: &BedPacking,
 ) -> Vec<String> {
     let void_fraction = packing.void_fraction;
@@ -32,6 +33,7 @@ pub fn warnings(
         &setup.population,
         temperature,
     ));
+    all.extend(notes.iter().cloned());
     all.extend(overlap::deepest(case, setup, mesh.periodicity()));
     all.extend(patch_cautions::columns(case, mesh));
     all.extend(size_cautions::pores(case));

@@ -134,6 +134,7 @@ impl Recorder {
         let Some(summary) = &mut self.summary else {
             return Ok(());
         };
+        summary.results_sum = resume::sum_of_store(&self.directory);
         summary.warnings.clone_from(&self.counters.warnings);
         summary.failure = failure;
         summary.verdict = Verdict::Stopped;
@@ -196,7 +197,6 @@ impl Recorder {
             if let Ok(store) = Store::resume(&path, columns, rows, snapshots.len()) {
                 return Ok(store);
             }
-            resume::check_snapshots(&self.directory, &counters.sums)?;
         }
         tracing::info!(
             "{STORE} is made anew from {SERIES} and {} snapshots",
@@ -554,6 +554,7 @@ impl Recorder {
                 largest_moved_share: self.counters.largest_moved_share,
             },
             warnings: self.counters.warnings.clone(),
+            results_sum: None,
             failure: None,
             pace: (self.counters.pace.rows > 0).then_some(self.counters.pace),
         };

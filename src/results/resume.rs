@@ -6,6 +6,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use calcine_coupler::coordinator::sum_of_file;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::difference;
@@ -97,9 +98,9 @@ pub(super) fn seal(results: &Path, counters: &mut Counters) -> Result<(), Result
     Ok(())
 }
 
-/// Refuses snapshots whose files are not what was written.
-pub(super) fn check_snapshots(results: &Path, sums: &[[String; 2]]) -> Result<(), ResultsError> {
-    for (number, sums) in sums.iter().enumerate() {
+/// Refuses snapshots whose files are not what was written; of several the first is named.
+fn check_snapshots(results: &Path, sums: &[[String; 2]]) -> Result<(), ResultsError> {
+    let check = |(number, sums): (usize, &[String; 2])| {
         for (name, expected) in [gas_file(number), particle_file(number)].iter().zip(sums) {
             let path = results.join(name);
             let found = sum_of_file(&path, false).map_err(ResultsError::file("read", &path))?;
@@ -108,8 +109,36 @@ pub(super) fn check_snapshots(results: &Path, sums: &[[String; 2]]) -> Result<()
                 return Err(ResultsError::behind(&path, fact));
             }
         }
+        Ok(())
+    };
+    let found: Vec<Result<(), ResultsError>> =
+        sums.par_iter().enumerate().map(check).collect();
+    found.into_iter().collect()
+}
+
+/// SHA-256 of a file of results that was closed; `None` where it cannot be read.
+pub(super) fn sum_of_store(results: &Path) -> Option<String> {
+    let path = results.join(STORE);
+    if cfg!(feature = "hdf5") {
+        sum_of_file(&path, false).ok()
+    } else {
+        None
     }
-    Ok(())
+}
+
+/// True where `results.h5` is as a run that was stopped left it. One that was killed may have left it in the middle.
+fn is_as_left(results: &Path) -> bool {
+    let Ok(summary) = Summary::read(results) else {
+        return false;
+    };
+    if summary.verdict == Verdict::Running {
+        return false;
+    }
+    let whole = summary.results_sum.is_none() || summary.results_sum == sum_of_store(results);
+    if !whole {
+        tracing::warn!("{STORE} has another content than the run left in it");
+    }
+    whole
 }
 
 /// Flushes a result directory's files to the disk and writes the counters into a checkpoint directory. What this takes does not depend on
@@ -178,11 +207,8 @@ pub(super) fn restore(
         }
     }
     counters.series.check(results)?;
-    // A run that was stopped has closed the file; one that was killed may have left it in the middle.
-    let is_closed = Summary::read(results).is_ok_and(|summary| summary.verdict != Verdict::Running);
-    if !is_closed && cfg!(feature = "hdf5") {
-        check_snapshots(results, &counters.sums)?;
-    }
+    check_snapshots(results, &counters.sums)?;
+    let is_closed = is_as_left(results);
     counters.series.cut(results)?;
     for folder in ["gas", "particles", "probes"] {
         let folder = results.join(folder);

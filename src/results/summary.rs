@@ -115,6 +115,9 @@ pub struct Summary {
     /// What was outside the ranges of laws, or did not converge, by kinds.
     #[serde(default)]
     pub warnings: Warnings,
+    /// SHA-256 of `results.h5` as a run that was stopped left it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub results_sum: Option<String>,
     /// Why the run ended with an error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<RunFailure>,

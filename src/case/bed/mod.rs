@@ -8,7 +8,7 @@ mod xml;
 
 use std::path::Path;
 
-pub(super) use sheet::{Choice, Entry};
+pub(super) use sheet::{Choice, Entry, Heaviness};
 use sheet::{Fault, Row, Sheet};
 
 use super::place_error::PlaceError;

@@ -28,6 +28,17 @@ pub(in crate::case) struct Entry {
     pub velocity: Option<Vec3>,
     /// Its angular velocity in rad/s, where the file states one.
     pub spin: Option<Vec3>,
+    /// Its density in kg/m³ or its mass in kg, where the file states one.
+    pub heaviness: Option<Heaviness>,
+}
+
+/// What a file says of how heavy a particle is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::case) enum Heaviness {
+    /// In kg/m³.
+    Density(f64),
+    /// In kg.
+    Mass(f64),
 }
 
 /// Where a particle stands in its file.
@@ -101,6 +112,10 @@ const RADIUS: [&str; 1] = ["radius"];
 const SAME_SIZE: f64 = 1e-2;
 
 const TEMPERATURE: [&str; 3] = ["temperature", "f_temp", "f_temp[0]"];
+
+const DENSITY: [&str; 2] = ["density", "rho"];
+
+const MASS: [&str; 1] = ["mass"];
 
 const TYPE: [&str; 1] = ["type"];
 
@@ -232,6 +247,12 @@ impl Sheet {
         let own = own.or_else(|| self.column(&RADIUS).map(|list| (list, 2.0)));
         self.check_sizes(&order)?;
         let temperature = self.column(&TEMPERATURE);
+        let (density, mass) = (self.column(&DENSITY), self.column(&MASS));
+        let heaviness = |index: usize| match (density, mass) {
+            (Some(list), _) => Some(Heaviness::Density(list[index])),
+            (None, Some(list)) => Some(Heaviness::Mass(list[index])),
+            (None, None) => None,
+        };
         let velocity = self.vectors("velocity", VELOCITY)?;
         let spin = self.vectors("angular velocity", SPIN)?;
         let positive = |what: &str, index: usize, value: f64| {
@@ -277,6 +298,7 @@ impl Sheet {
                 temperature: temperature.transpose()?,
                 velocity: velocity.transpose()?,
                 spin: spin.transpose()?,
+                heaviness: heaviness(index),
             })
         };
         order.into_iter().map(entry).collect()
@@ -288,7 +310,15 @@ pub(super) fn is_read(name: &str) -> bool {
     let vectors = VELOCITY.iter().chain(&SPIN).flatten();
     let mut all = AXES.iter().flatten().chain(vectors);
     all.any(|other| *other == name)
-        || [&DIAMETER[..], &RADIUS, &TEMPERATURE, &TYPE, &ID]
+        || [
+            &DIAMETER[..],
+            &RADIUS,
+            &TEMPERATURE,
+            &DENSITY,
+            &MASS,
+            &TYPE,
+            &ID,
+        ]
             .iter()
             .any(|names| names.contains(&name))
 }
