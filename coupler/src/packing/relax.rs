@@ -1,5 +1,6 @@
 //! Removal of overlaps: each overlapping pair in turn moves apart, then walls push inwards.
 
+use calcine_numerics::parallel::{self, update};
 use calcine_physics::Vec3;
 use rayon::prelude::*;
 
@@ -92,6 +93,9 @@ impl Near {
     /// Parts each overlapping pair in turn: pairs of all blocks side by side, then those between blocks.
     fn part(&self, radii: &[f64], centres: &mut [Vec3]) {
         let lines = Lines(self.periodicity);
+        if let [pairs] = &self.within[..] {
+            return lines.part(pairs, radii, centres);
+        }
         let blocks = centres.par_chunks_mut(self.size);
         let blocks = blocks.zip(radii.par_chunks(self.size)).zip(&self.within);
         blocks.for_each(|((centres, radii), pairs)| lines.part(pairs, radii, centres));
@@ -101,6 +105,9 @@ impl Near {
     /// Largest overlap over the sum of the pair's radii, 0 if there is none.
     fn overlap(&self, radii: &[f64], centres: &[Vec3]) -> f64 {
         let lines = Lines(self.periodicity);
+        if let [pairs] = &self.within[..] {
+            return lines.overlap(pairs, radii, centres);
+        }
         let blocks = centres.par_chunks(self.size);
         let blocks = blocks.zip(radii.par_chunks(self.size)).zip(&self.within);
         let within = blocks.map(|((centres, radii), pairs)| lines.overlap(pairs, radii, centres));
@@ -120,10 +127,11 @@ fn sweeps(container: &Container, radii: &[f64], centres: &mut [Vec3], blocks: us
     let mut listed = centres.to_vec();
     let mut near = find(centres);
     for sweep in 0..SWEEPS {
-        let moved =
-            |(new, old): (&Vec3, &Vec3)| container.periodicity.shortest(new - old).norm_squared();
-        let moved = centres.par_iter().zip(&listed).map(moved);
-        let farthest = moved.reduce(|| 0.0, f64::max);
+        let moved = |sphere: usize| {
+            let way = centres[sphere] - listed[sphere];
+            container.periodicity.shortest(way).norm_squared()
+        };
+        let (_, farthest) = parallel::largest(centres.len(), moved);
         // The list is renewed before two spheres that it lacks can touch.
         if farthest > 0.25 * (0.5 * skin) * (0.5 * skin) {
             listed.copy_from_slice(centres);
@@ -133,8 +141,9 @@ fn sweeps(container: &Container, radii: &[f64], centres: &mut [Vec3], blocks: us
             return 0.0;
         }
         near.part(radii, centres);
-        let all = centres.par_iter_mut().zip(radii);
-        all.for_each(|(centre, &radius)| *centre = container.inside(*centre, radius));
+        update(centres, |sphere, centre| {
+            *centre = container.inside(*centre, radii[sphere]);
+        });
     }
     Near::find(container, radii, centres, 0.0, blocks).overlap(radii, centres)
 }

@@ -187,7 +187,7 @@ fn closed_pressure(frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
     let boundary = grid.faces.len() - grid.internal;
     let [outflow] = sums(boundary, |face| {
         let index = grid.internal + face;
-        match frame.boundary.at(index) {
+        match *frame.boundary.at(index) {
             super::boundary::FaceCondition::Inlet { mass_flux, .. } => {
                 [-mass_flux * grid.faces[index].area]
             }

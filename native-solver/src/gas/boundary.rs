@@ -234,8 +234,8 @@ impl Boundaries {
 
     /// The condition of a boundary face.
     #[inline]
-    pub fn at(&self, face: usize) -> FaceCondition {
-        self.patches[self.patch_of[face - self.internal] as usize].value
+    pub fn at(&self, face: usize) -> &FaceCondition {
+        &self.patches[self.patch_of[face - self.internal] as usize].value
     }
 
     /// True where a patch is a side of a wedge.

@@ -73,7 +73,7 @@ pub struct EnthalpyFlows {
 /// What a boundary face exchanges heat with: its temperature in K, where it has one.
 #[inline]
 fn outer(frame: &AttemptFrame<'_>, index: usize) -> Option<f64> {
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Inlet { gas, .. } => Some(gas.temperature),
         FaceCondition::Wall { heat, .. } => match heat {
             HeatCondition::Temperature(temperature) => Some(temperature),
@@ -94,7 +94,7 @@ fn inlet(frame: &AttemptFrame<'_>, index: usize) -> Option<f64> {
 /// Heat that flows in through a boundary face whatever the gas does, in W.
 #[inline]
 fn imposed(frame: &AttemptFrame<'_>, index: usize) -> f64 {
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Wall {
             heat: HeatCondition::Flux(flux),
             ..
@@ -117,7 +117,7 @@ fn conduction(
     }
     let pores = frame.void_fraction[face.owner];
     let eddies = frame.heat_eddies_at(index);
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Inlet { gas, .. } => inflow::conduction(frame, index, &gas),
         FaceCondition::Wall { heat, .. } => match heat {
             HeatCondition::Temperature(temperature) => {
@@ -299,7 +299,7 @@ impl Enthalpy {
         let grid = frame.grid;
         let second = frame.convection != Convection::Upwind && species.is_empty();
         if second {
-            let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
+            let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
@@ -313,7 +313,7 @@ impl Enthalpy {
             gradients(grid, &now.enthalpy, boundary, found, faces);
         }
         if !grid.orthogonal {
-            let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
+            let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
@@ -366,7 +366,7 @@ impl Enthalpy {
             relative: goal.relative,
             iterations: ITERATIONS,
         };
-        self.preconditioner.update(&self.matrix);
+        self.preconditioner.expire();
         let solved = krylov.general(
             &self.matrix,
             &mut self.preconditioner,

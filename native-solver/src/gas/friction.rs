@@ -25,7 +25,7 @@ use crate::numerics::parallel::fill;
 /// What the corrections of an outer iteration hold of the friction at walls.
 #[derive(Debug, Default)]
 pub struct WallFriction {
-    /// w − w' of each face of the boundary in kg/s; zero where no velocity is given.
+    /// w − w' of each face of the boundary in kg/s; zero where no velocity is given. Empty where none is at all.
     held: Vec<f64>,
     /// u* of each cell in m/s.
     predicted: Vec<Vec3>,
@@ -46,6 +46,10 @@ impl WallFriction {
     /// Takes up the momentum equation at hand and the velocity that its predictor found.
     pub fn begin(&mut self, frame: &AttemptFrame<'_>, momentum: &Momentum, predicted: &[Vec3]) {
         let grid = frame.grid;
+        if (grid.internal..grid.faces.len()).all(|index| momentum.friction(index) == 0.0) {
+            self.held.clear();
+            return;
+        }
         self.predicted.clear();
         self.predicted.extend_from_slice(predicted);
         self.held.resize(grid.faces.len() - grid.internal, 0.0);
@@ -63,6 +67,9 @@ impl WallFriction {
     /// What the gas of a cell gets back at a velocity in N: the pull (w − w') (u − u*) of walls on its slip along them.
     pub fn given_back(&self, grid: &MeshGraph, cell: usize, velocity: &Vec3) -> Vec3 {
         let mut force = Vec3::zeros();
+        if self.held.is_empty() {
+            return force;
+        }
         for link in grid.links(cell).iter().filter(|link| link.is_boundary()) {
             let index = link.face as usize;
             let held = self.held[index - grid.internal];

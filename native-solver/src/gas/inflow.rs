@@ -30,7 +30,7 @@ fn thermal(frame: &AttemptFrame<'_>, index: usize, gas: &BoundaryGas) -> f64 {
 /// Conductance for species in kg/s of a boundary face: of an inlet of given values; zero elsewhere.
 #[inline]
 pub fn diffusion(frame: &AttemptFrame<'_>, index: usize) -> f64 {
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Inlet {
             gas,
             diffuses: true,
@@ -43,7 +43,7 @@ pub fn diffusion(frame: &AttemptFrame<'_>, index: usize) -> f64 {
 /// Thermal conductance in W/K of an inlet face: of one of given values; zero of others.
 #[inline]
 pub fn conduction(frame: &AttemptFrame<'_>, index: usize, gas: &BoundaryGas) -> f64 {
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Inlet { diffuses: true, .. } => thermal(frame, index, gas),
         _ => 0.0,
     }
@@ -69,7 +69,7 @@ pub fn face_fraction(frame: &AttemptFrame<'_>, index: usize, k: usize, inner: f6
             diffuses,
             ..
         },
-    ) = (frame.boundary.composition(index), frame.boundary.at(index))
+    ) = (frame.boundary.composition(index), *frame.boundary.at(index))
     else {
         return None;
     };
@@ -94,7 +94,7 @@ pub fn face_heat(
         gas,
         diffuses,
         ..
-    } = frame.boundary.at(index)
+    } = *frame.boundary.at(index)
     else {
         return None;
     };

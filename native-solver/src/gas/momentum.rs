@@ -52,6 +52,8 @@ pub struct Momentum {
     right: Vec<f64>,
     /// ∂u_i/∂x_j of each cell in 1/s.
     gradients: Vec<Matrix3<f64>>,
+    /// Memory for values on faces.
+    on_faces: Vec<Vec3>,
     /// Momentum that leaves the owner of each face in N, of what the equation takes explicitly.
     explicit: Vec<Vec3>,
 }
@@ -60,7 +62,7 @@ pub struct Momentum {
 #[inline]
 pub fn given_velocity(frame: &AttemptFrame<'_>, index: usize) -> Option<Vec3> {
     let face = &frame.grid.faces[index];
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Inlet {
             superficial_velocity,
             ..
@@ -74,7 +76,7 @@ pub fn given_velocity(frame: &AttemptFrame<'_>, index: usize) -> Option<Vec3> {
 /// given one, and at an opening that of gas of the surroundings, straight in.
 #[inline]
 fn carried_velocity(frame: &AttemptFrame<'_>, index: usize, flux: f64) -> Option<Vec3> {
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Outlet {
             surroundings: Some(surroundings),
             ..
@@ -100,7 +102,7 @@ fn viscous(
         return conductance(face, interpolate(face, &material.viscosity));
     }
     let pores = frame.void_fraction[face.owner];
-    match frame.boundary.at(index) {
+    match *frame.boundary.at(index) {
         FaceCondition::Inlet { gas, .. } => {
             conductance(face, pores * gas.viscosity + frame.eddies_at(index))
         }
@@ -128,6 +130,7 @@ impl Momentum {
             component: vec![0.0; cells],
             right: vec![0.0; cells],
             gradients: vec![Matrix3::zeros(); cells],
+            on_faces: vec![Vec3::zeros(); faces],
             explicit: vec![Vec3::zeros(); faces],
         }
     }
@@ -258,7 +261,7 @@ impl Momentum {
                 self.normal.add(axis, self.matrix.diagonal_mut());
             }
             if axis == 0 || damps || self.normal.damps(axis - 1) {
-                self.preconditioner.update(&self.matrix);
+                self.preconditioner.expire();
             }
             let (source, normal, velocity) = (&self.source, &self.normal, &now.velocity);
             let gradient = &now.pressure_gradient;
@@ -317,10 +320,9 @@ impl Momentum {
         let grid = frame.grid;
         if grid.orthogonal {
             let value = |index: usize, face: &Face| face_velocity(frame, index, face, velocity);
-            fill(&mut self.gradients, |cell| tensor(grid, cell, value));
-            return;
+            return tensors(grid, value, &mut self.on_faces, &mut self.gradients);
         }
-        let boundary = |index: usize, _: Vec3| match frame.boundary.at(index) {
+        let boundary = |index: usize, _: Vec3| match *frame.boundary.at(index) {
             FaceCondition::Wall { sticks: None, .. } | FaceCondition::Outlet { .. } => {
                 Beside::AtFoot(face_velocity(frame, index, &grid.faces[index], velocity))
             }
@@ -343,13 +345,21 @@ impl Momentum {
             let face = &grid.faces[index];
             if index >= grid.internal {
                 let own = &gradients[face.owner];
-                return if let FaceCondition::Outlet { .. } = frame.boundary.at(index) {
-                    let developed = own - (own * face.normal) * face.normal.transpose();
-                    let area = face.area * material.viscosity[face.owner];
-                    -area * transposed(&developed, &face.normal)
-                } else {
-                    explicit_at_boundary(frame, index, own, viscous[index], now)
-                        + normal.explicit(frame, index, material.viscosity[face.owner], own)
+                let viscosity = material.viscosity[face.owner];
+                return match *frame.boundary.at(index) {
+                    FaceCondition::Outlet { .. } => {
+                        let developed = own - (own * face.normal) * face.normal.transpose();
+                        -face.area * viscosity * transposed(&developed, &face.normal)
+                    }
+                    FaceCondition::Wall { sticks: None, .. } => {
+                        normal.explicit(grid, index, viscosity, own)
+                    }
+                    FaceCondition::Wall {
+                        sticks: Some(_), ..
+                    }
+                    | FaceCondition::Inlet { .. } => {
+                        explicit_at_boundary(frame, index, own, viscous[index], now)
+                    }
                 };
             }
             let flux = now.flux[index];
@@ -385,24 +395,34 @@ fn face_velocity(frame: &AttemptFrame<'_>, index: usize, face: &Face, velocity: 
         weight * velocity[face.owner] + (1.0 - weight) * velocity[face.neighbour]
     } else {
         let own = velocity[face.owner];
-        match frame.boundary.at(index) {
+        match *frame.boundary.at(index) {
             FaceCondition::Wall { sticks: None, .. } => own - own.dot(&face.normal) * face.normal,
             _ => given_velocity(frame, index).unwrap_or(own),
         }
     }
 }
 
-/// Σ u_f S / V (Gauss): ∂u_i/∂x_j.
-#[inline]
-pub fn tensor(grid: &MeshGraph, cell: usize, value: impl Fn(usize, &Face) -> Vec3) -> Matrix3<f64> {
-    let mut sum = Matrix3::zeros();
-    for link in grid.links(cell) {
-        let index = link.face as usize;
+/// Σ u_f S / V (Gauss): ∂u_i/∂x_j of each cell. `faces` is memory for values on faces.
+pub fn tensors(
+    grid: &MeshGraph,
+    value: impl Fn(usize, &Face) -> Vec3 + Sync,
+    faces: &mut [Vec3],
+    gradients: &mut [Matrix3<f64>],
+) {
+    fill(faces, |index| {
         let face = &grid.faces[index];
-        let weighted = (link.sign * face.area) * value(index, face);
-        sum += weighted * face.normal.transpose();
-    }
-    sum / grid.volume[cell]
+        face.area * value(index, face)
+    });
+    let faces = &*faces;
+    fill(gradients, |cell| {
+        let mut sum = Matrix3::zeros();
+        for link in grid.links(cell) {
+            let index = link.face as usize;
+            let weighted = link.sign * faces[index];
+            sum += weighted * grid.faces[index].normal.transpose();
+        }
+        sum / grid.volume[cell]
+    });
 }
 
 /// (∇uᵀ − ⅔ ∇·u)·n in 1/s.

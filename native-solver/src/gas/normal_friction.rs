@@ -16,7 +16,6 @@ use nalgebra::Matrix3;
 use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::FaceCondition;
 use crate::numerics::grid::MeshGraph;
-use crate::numerics::parallel::fill;
 
 /// Share of the normal derivative of the normal velocity in the normal stress, 2 − ⅔.
 const NORMAL: f64 = 4.0 / 3.0;
@@ -29,7 +28,20 @@ pub struct NormalFriction {
     /// Where N of each cell is, or beyond all; empty where no wall is without friction.
     place: Vec<u32>,
     tensors: Vec<Matrix3<f64>>,
+    slipping: Option<SlippingFaces>,
 }
+
+/// The faces of walls without friction, which stay as they are.
+#[derive(Debug, Default)]
+struct SlippingFaces {
+    /// Faces of the boundary, from its first one on, each with the place of its cell's tensor.
+    faces: Vec<[u32; 2]>,
+    /// True where cells have faces that are oblique to them.
+    oblique: bool,
+}
+
+/// Cosine of the angle between two faces below which they count as at right angles.
+const SQUARE: f64 = 1e-9;
 
 /// Whether gas slips along a face of the boundary.
 #[inline]
@@ -40,39 +52,60 @@ fn slips(frame: &AttemptFrame<'_>, index: usize) -> bool {
     )
 }
 
+/// Whether the cell behind a face of a wall has faces that are oblique to it.
+fn is_oblique(grid: &MeshGraph, wall: usize) -> bool {
+    let wall = &grid.faces[wall];
+    grid.links(wall.owner).iter().any(|link| {
+        let normal = &grid.faces[link.face as usize].normal;
+        let cosine = normal.dot(&wall.normal).abs();
+        cosine > SQUARE && cosine < 1.0 - SQUARE
+    })
+}
+
 impl NormalFriction {
-    /// Takes up the viscosity at hand.
-    pub fn update(&mut self, frame: &AttemptFrame<'_>, material: &CellProperties) {
+    fn find(&mut self, frame: &AttemptFrame<'_>) -> SlippingFaces {
         let grid = frame.grid;
-        self.stiffness.resize(grid.faces.len() - grid.internal, 0.0);
-        fill(&mut self.stiffness, |boundary| {
+        let mut found = SlippingFaces::default();
+        self.stiffness = vec![0.0; grid.faces.len() - grid.internal];
+        for boundary in 0..self.stiffness.len() {
             let index = grid.internal + boundary;
             if !slips(frame, index) {
-                return 0.0;
-            }
-            let face = &grid.faces[index];
-            NORMAL * material.viscosity[face.owner] * face.area / face.owner_distance
-        });
-        self.place.clear();
-        self.tensors.clear();
-        for (boundary, &stiffness) in self.stiffness.iter().enumerate() {
-            if stiffness == 0.0 {
                 continue;
             }
             self.place.resize(grid.cells(), u32::MAX);
-            let face = &grid.faces[grid.internal + boundary];
-            let place = &mut self.place[face.owner];
+            let place = &mut self.place[grid.faces[index].owner];
             if *place == u32::MAX {
                 *place = self.tensors.len() as u32;
                 self.tensors.push(Matrix3::zeros());
             }
-            self.tensors[*place as usize] += stiffness * face.normal * face.normal.transpose();
+            found.faces.push([boundary as u32, *place]);
+            found.oblique |= is_oblique(grid, index);
         }
+        found
     }
 
-    /// True where no wall is without friction.
-    pub fn is_empty(&self) -> bool {
-        self.tensors.is_empty()
+    /// Takes up the viscosity at hand.
+    pub fn update(&mut self, frame: &AttemptFrame<'_>, material: &CellProperties) {
+        let grid = frame.grid;
+        let slipping = match self.slipping.take() {
+            Some(slipping) => slipping,
+            None => self.find(frame),
+        };
+        self.tensors.fill(Matrix3::zeros());
+        for &[boundary, place] in &slipping.faces {
+            let face = &grid.faces[grid.internal + boundary as usize];
+            let stiffness =
+                NORMAL * material.viscosity[face.owner] * face.area / face.owner_distance;
+            self.stiffness[boundary as usize] = stiffness;
+            self.tensors[place as usize] += stiffness * face.normal * face.normal.transpose();
+        }
+        self.slipping = Some(slipping);
+    }
+
+    /// True where N has nothing of velocities along the faces of cells: no wall is without friction, or the faces of the cells at
+    /// them are parallel or at right angles to them.
+    pub fn is_square(&self) -> bool {
+        self.slipping.as_ref().is_none_or(|slipping| !slipping.oblique)
     }
 
     /// N of a cell in kg/s.
@@ -140,25 +173,22 @@ impl NormalFriction {
         stiffness * velocity.dot(normal) * normal
     }
 
-    /// Momentum that leaves the owner of such a face by the rest, by the gradient ∂u_i/∂x_j of the cell; nothing at other faces.
+    /// Momentum that leaves the owner of such a face by the rest, by the gradient ∂u_i/∂x_j of the cell.
     #[inline]
     pub fn explicit(
         &self,
-        frame: &AttemptFrame<'_>,
+        grid: &MeshGraph,
         index: usize,
         viscosity: f64,
         gradient: &Matrix3<f64>,
     ) -> Vec3 {
-        if !slips(frame, index) {
-            return Vec3::zeros();
-        }
-        let face = &frame.grid.faces[index];
+        let face = &grid.faces[index];
         let normal = &face.normal;
         let along = gradient.trace() - normal.dot(&(gradient * normal));
         let mut out = 2.0 / 3.0 * viscosity * face.area * along;
-        if !frame.grid.orthogonal {
+        if !grid.orthogonal {
             let skewed = normal.dot(&(gradient * face.owner_skew));
-            out += self.stiffness[index - frame.grid.internal] * skewed;
+            out += self.stiffness[index - grid.internal] * skewed;
         }
         out * normal
     }

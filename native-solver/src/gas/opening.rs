@@ -27,7 +27,7 @@ fn surroundings(frame: &AttemptFrame<'_>, index: usize) -> Option<(f64, f64)> {
         pressure,
         surroundings,
         ..
-    } = frame.boundary.at(index)
+    } = *frame.boundary.at(index)
     else {
         return None;
     };

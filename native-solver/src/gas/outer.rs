@@ -78,6 +78,7 @@ pub struct Equations {
     closer: f64,
     /// What they have taken so far.
     pub phases: GasPhases,
+    watch: Stopwatch,
 }
 
 impl Equations {
@@ -97,6 +98,7 @@ impl Equations {
             continuity: ContinuityResidual::default(),
             closer: 1.0,
             phases: GasPhases::default(),
+            watch: Stopwatch::new(),
         }
     }
 
@@ -121,6 +123,7 @@ impl Equations {
         self.chemistry.begin(frame, begin != Begin::Window);
         self.share = 1.0;
         self.closer = 1.0;
+        self.watch = Stopwatch::new();
         if frame.grid.orthogonal {
             self.assess_flow(frame, now);
         } else {
@@ -161,15 +164,14 @@ impl Equations {
 
     /// Assembles momentum with the fields at hand; how far these are from solving it and continuity.
     fn assess_flow(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) {
-        let mut watch = Stopwatch::new();
         self.material.update(frame, now);
-        watch.lap(&mut self.phases.properties);
+        self.watch.lap(&mut self.phases.properties);
         let material = &self.material;
         self.momentum.assemble(frame, material, self.share, now);
         let momentum = self.momentum.residual(frame, now);
-        watch.lap(&mut self.phases.momentum);
+        self.watch.lap(&mut self.phases.momentum);
         self.continuity = self.pressure.residual(frame, material, now);
-        watch.lap(&mut self.phases.pressure);
+        self.watch.lap(&mut self.phases.pressure);
         let continuity = self.continuity.share;
         tracing::debug!("residuals: momentum {momentum:.1e}, continuity {continuity:.1e}");
         self.flow = momentum.max(continuity);
@@ -180,16 +182,15 @@ impl Equations {
     fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> f64 {
         self.assess_flow(frame, now);
         self.react(frame);
-        let mut watch = Stopwatch::new();
         let species = self
             .species
             .residual(frame, &self.material, self.share, now);
-        watch.lap(&mut self.phases.species);
+        self.watch.lap(&mut self.phases.species);
         let carried = &self.species.carried;
         self.enthalpy
             .assemble(frame, &self.material, carried, self.share, now);
         let enthalpy = self.enthalpy.residual(now);
-        watch.lap(&mut self.phases.enthalpy);
+        self.watch.lap(&mut self.phases.enthalpy);
         let change = self.chemistry.change;
         tracing::debug!(
             "residuals: enthalpy {enthalpy:.1e}, species {species:.1e}, sweep {change:.1e}"
@@ -205,12 +206,11 @@ impl Equations {
         corrections: u32,
         now: &mut GasState,
     ) -> Result<u32, GasFailure> {
-        let mut watch = Stopwatch::new();
         let mut linear = LinearTolerances::new(controls, &self.continuity);
         linear.continuity *= self.closer;
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, linear.terms, now);
-        watch.lap(&mut self.phases.momentum);
+        self.watch.lap(&mut self.phases.momentum);
         self.pressure.assemble(frame, material, &self.momentum, now);
         for _ in 0..corrections {
             iterations +=
@@ -218,7 +218,7 @@ impl Equations {
                     .correct(frame, material, &self.momentum, krylov, &linear, now);
         }
         pressure::advance_mass(frame, now);
-        watch.lap(&mut self.phases.pressure);
+        self.watch.lap(&mut self.phases.pressure);
         let Some(gas) = frame.chemistry.reacting() else {
             let goal = ScalarTolerance {
                 absolute: linear.scalars,
@@ -232,7 +232,7 @@ impl Equations {
             self.chemistry.start(now);
             iterations += self.conserve(frame, linear.scalars, now)?;
             self.sweep(frame, gas, controls.outer_tolerance, now)?;
-            watch.lap(&mut self.phases.chemistry);
+            self.watch.lap(&mut self.phases.chemistry);
             if self.chemistry.change <= enough {
                 break;
             }
@@ -325,11 +325,10 @@ impl Equations {
             self.react(frame);
             iterations += self.scalars(frame, goal, Assembled::No, now);
         }
-        let mut watch = Stopwatch::new();
         self.species.carry_remainder(frame, now);
-        watch.lap(&mut self.phases.species);
+        self.watch.lap(&mut self.phases.species);
         self.enthalpy.carry_remainder(frame, now);
-        watch.lap(&mut self.phases.enthalpy);
+        self.watch.lap(&mut self.phases.enthalpy);
         iterations
     }
 
@@ -341,18 +340,17 @@ impl Equations {
         assembled: Assembled,
         now: &mut GasState,
     ) -> u32 {
-        let mut watch = Stopwatch::new();
         let (krylov, material) = (&mut self.krylov, &self.material);
         let solve = (goal, self.share, assembled);
         let iterations = self.species.solve(frame, material, krylov, solve, now);
-        watch.lap(&mut self.phases.species);
+        self.watch.lap(&mut self.phases.species);
         if assembled == Assembled::No || frame.species() > 0 {
             let carried = &self.species.carried;
             self.enthalpy
                 .assemble(frame, material, carried, self.share, now);
         }
         let iterations = iterations + self.enthalpy.solve(frame, krylov, goal, now);
-        watch.lap(&mut self.phases.enthalpy);
+        self.watch.lap(&mut self.phases.enthalpy);
         iterations
     }
 

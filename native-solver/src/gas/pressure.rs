@@ -92,7 +92,7 @@ pub struct Pressure {
     /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
     /// the face's normal, in N/m³: the face's own old flux in place of the cell's.
     inertia: Vec<[f64; 2]>,
-    /// What those halves lose by N of their cells' velocity along each face, in N/m³; empty where no wall is without friction.
+    /// What those halves lose by N of their cells' velocity along each face, in N/m³; empty where they lose nothing.
     across: Vec<[f64; 2]>,
     transport: FaceTransport,
     friction: WallFriction,
@@ -259,7 +259,7 @@ impl Pressure {
                 *diagonal *= 2.0;
             }
         });
-        self.preconditioner.get().update(&self.matrix);
+        self.preconditioner.get().expire();
     }
 
     /// One correction: new pressure, fluxes, pressure gradient and velocity; returns the linear
@@ -404,7 +404,7 @@ impl Pressure {
 
     fn update_across(&mut self, frame: &AttemptFrame<'_>, momentum: &Momentum, velocity: &[Vec3]) {
         let grid = frame.grid;
-        if momentum.normal.is_empty() {
+        if momentum.normal.is_square() {
             self.across.clear();
             return;
         }
@@ -433,7 +433,7 @@ impl Pressure {
         fill(&mut drive, |index| {
             let face = &frame.grid.faces[index];
             if index >= frame.grid.internal {
-                match frame.boundary.at(index) {
+                match *frame.boundary.at(index) {
                     FaceCondition::Inlet { mass_flux, .. } => return -mass_flux * face.area,
                     FaceCondition::Wall { .. } => return 0.0,
                     FaceCondition::Outlet { .. } => {}
@@ -527,15 +527,24 @@ impl Pressure {
                 momentum.matrix.diagonal()[cell],
                 self.force[cell] - gradients[cell],
             );
-            let tensor = momentum.normal.tensor(cell);
-            let inverse =
-                tensor.and_then(|tensor| (tensor + Matrix3::identity() * diagonal).try_inverse());
-            match inverse {
+            match momentum.normal.tensor(cell) {
                 None => share / diagonal * force,
-                Some(inverse) => inverse * (share * force),
+                Some(tensor) if is_diagonal(tensor) => {
+                    (share * force).component_div(&tensor.diagonal().add_scalar(diagonal))
+                }
+                Some(tensor) => match (tensor + Matrix3::identity() * diagonal).try_inverse() {
+                    None => share / diagonal * force,
+                    Some(inverse) => inverse * (share * force),
+                },
             }
         });
     }
+}
+
+/// True where a symmetric tensor has nothing beside its diagonal.
+#[inline]
+fn is_diagonal(tensor: &Matrix3<f64>) -> bool {
+    tensor.m12 == 0.0 && tensor.m13 == 0.0 && tensor.m23 == 0.0
 }
 
 /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, which it is where faces are flat; nothing where all are.

@@ -126,12 +126,12 @@ impl SpeciesEquations {
         if assembled == Assembled::No || own {
             self.assemble(frame, now, 0);
         }
-        self.preconditioner.update(&self.matrix);
+        self.preconditioner.expire();
         let mut iterations = 0;
         for k in 0..species - 1 {
             if own && k > 0 {
                 self.assemble(frame, now, k);
-                self.preconditioner.update(&self.matrix);
+                self.preconditioner.expire();
             }
             self.fill_source(frame, now, k);
             let target = SolveTolerance {
@@ -318,12 +318,12 @@ impl SpeciesEquations {
     fn update_carried(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
         let grid = frame.grid;
         let second = frame.convection != Convection::Upwind;
-        let given = |index: usize| match frame.boundary.at(index) {
+        let given = |index: usize| match *frame.boundary.at(index) {
             FaceCondition::Inlet { gas, .. } => Some(gas.temperature),
             FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => None,
         };
         if second {
-            let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
+            let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..

@@ -17,7 +17,7 @@ use calcine_coupler::physics::Vec3;
 use nalgebra::Matrix3;
 
 use super::attempt::{AttemptFrame, CellProperties};
-use super::momentum::{Momentum, given_velocity, tensor};
+use super::momentum::{Momentum, given_velocity, tensors};
 use super::recovery::{Recovery, reach};
 use super::state::GasState;
 use crate::numerics::gradient::{self, Beside};
@@ -33,6 +33,10 @@ pub struct FaceTransport {
     mass_velocity: Vec<Vec3>,
     /// Its gradient in kg/m³/s.
     gradients: Vec<Matrix3<f64>>,
+    /// Memory for values on faces.
+    on_faces: Vec<Vec3>,
+    /// a_t of each cell in kg/s, and 1/(ρ ε χ V) in 1/kg.
+    per_flux: Vec<[f64; 2]>,
     /// Memory for gradients without those of the cells beside.
     plain: Vec<Matrix3<f64>>,
     /// What ρ ε u has at each face beyond its owner's and its neighbour's, along its normal, by their gradients; in kg/m²/s.
@@ -49,6 +53,8 @@ impl FaceTransport {
             force: vec![[0.0; 2]; faces],
             mass_velocity: vec![Vec3::zeros(); cells],
             gradients: vec![Matrix3::zeros(); cells],
+            on_faces: vec![Vec3::zeros(); faces],
+            per_flux: vec![[0.0; 2]; cells],
             plain: Vec::new(),
             reach: Vec::new(),
             bent: Vec::new(),
@@ -71,12 +77,17 @@ impl FaceTransport {
         let held = |cell: usize| material.density[cell] * frame.void_fraction[cell];
         self.update_gradients(frame, held, &now.flux);
         self.update_bent(frame, now, recovery);
-        let (gradients, mass_velocity, bent) = (&self.gradients, &self.mass_velocity, &self.bent);
-        let per_flux = |cell: usize, normal: &Vec3| {
+        fill(&mut self.per_flux, |cell| {
             let density = material.density[cell];
             let shares = frame.void_fraction[cell] * frame.pressure_share[cell];
-            let transport = momentum.transport(frame, cell) + momentum.normal.along(cell, normal);
-            transport / (density * shares * grid.volume[cell])
+            let held = density * shares * grid.volume[cell];
+            [momentum.transport(frame, cell), 1.0 / held]
+        });
+        let (gradients, mass_velocity, bent) = (&self.gradients, &self.mass_velocity, &self.bent);
+        let per_flux = &self.per_flux;
+        let per_flux = |cell: usize, normal: &Vec3| {
+            let [transport, by_mass] = per_flux[cell];
+            (transport + momentum.normal.along(cell, normal)) * by_mass
         };
         fill(&mut self.force[..grid.internal], |index| {
             let face = &grid.faces[index];
@@ -130,8 +141,7 @@ impl FaceTransport {
                     own + (flux[index] / face.area - own.dot(&face.normal)) * face.normal
                 }
             };
-            fill(&mut self.gradients, |cell| tensor(grid, cell, value));
-            return;
+            return tensors(grid, value, &mut self.on_faces, &mut self.gradients);
         }
         let boundary = |index: usize, own: Vec3| {
             let face = &grid.faces[index];

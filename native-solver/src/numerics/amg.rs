@@ -122,12 +122,15 @@ pub struct Multigrid {
     direct: Option<Cholesky<f64, Dyn>>,
     /// Diagonal of the matrix that the hierarchy was built for.
     diagonal: Vec<f64>,
+    /// True where the hierarchy serves the matrix at hand.
+    holds: bool,
 }
 
 impl Multigrid {
-    /// Drops the hierarchy, so that the next `update` depends on its matrix alone.
+    /// Drops the hierarchy, so that the next one depends on its matrix alone.
     pub fn forget(&mut self) {
         self.levels.clear();
+        self.holds = false;
     }
 
     /// Entries on all levels over those of the finest: what a cycle costs.
@@ -199,12 +202,17 @@ fn factorised(level: &Level) -> Option<Cholesky<f64, Dyn>> {
 }
 
 impl Preconditioner for Multigrid {
+    fn expire(&mut self) {
+        self.holds = false;
+    }
+
     /// Takes up a matrix; where it is nearly the last one, the hierarchy is kept. The graph must
     /// stay the same.
-    fn update(&mut self, matrix: &Matrix) {
-        if !self.serves(matrix) {
+    fn renew(&mut self, matrix: &Matrix) {
+        if !self.holds && !self.serves(matrix) {
             self.build(matrix);
         }
+        self.holds = true;
     }
 
     fn apply(&mut self, r: &[f64], z: &mut [f64]) {

@@ -107,6 +107,7 @@ impl Krylov {
             if solved.converged || left == 0 || !solved.residual.is_finite() {
                 break;
             }
+            preconditioner.renew(matrix);
             solved.iterations += sweep(self, matrix, preconditioner, x, goal, left);
             matrix.residual(x, b, &mut self.r);
             solved.residual = magnitude(&self.r);

@@ -8,10 +8,19 @@ use super::matrix::Matrix;
 /// number of threads; couplings between blocks are left out.
 const BLOCK: usize = 16 * 1024;
 
-/// z ≈ A⁻¹ r, the same linear map at each call until the next `update`; symmetric where A is.
+/// z ≈ A⁻¹ r, the same linear map at each call until the matrix changes; symmetric where A is.
 pub trait Preconditioner {
+    /// Says that the matrix is another one.
+    fn expire(&mut self);
+
+    /// Takes up the matrix, where it is another one than before; a solver asks for it before it applies.
+    fn renew(&mut self, matrix: &Matrix);
+
     /// Takes up a matrix.
-    fn update(&mut self, matrix: &Matrix);
+    fn update(&mut self, matrix: &Matrix) {
+        self.expire();
+        self.renew(matrix);
+    }
 
     /// z ≈ A⁻¹ r.
     fn apply(&mut self, r: &[f64], z: &mut [f64]);
@@ -23,6 +32,8 @@ pub trait Preconditioner {
 #[derive(Clone, Debug, Default)]
 pub struct Incomplete {
     blocks: Vec<Block>,
+    /// True where the factors are of the matrix at hand.
+    holds: bool,
 }
 
 /// The factorisation of a block of cells; indices count from its first one.
@@ -138,7 +149,15 @@ impl Block {
 }
 
 impl Preconditioner for Incomplete {
-    fn update(&mut self, matrix: &Matrix) {
+    fn expire(&mut self) {
+        self.holds = false;
+    }
+
+    fn renew(&mut self, matrix: &Matrix) {
+        if self.holds {
+            return;
+        }
+        self.holds = true;
         if self.blocks.is_empty() {
             let starts = (0..matrix.diagonal().len()).step_by(BLOCK);
             self.blocks = starts.map(|first| Block::new(matrix, first)).collect();

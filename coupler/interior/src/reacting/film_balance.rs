@@ -1,13 +1,13 @@
 //! The net flow through the film of a particle, which its reactions make and which acts on them (docs/theory.md, RXN-3).
 
 use calcine_numerics::{Dual, Number};
-use calcine_physics::film::{StefanFlow, bernoulli};
+use calcine_physics::film::{FilmCoefficient, StefanFlow, bernoulli};
 use calcine_physics::gas::GAS_CONSTANT;
 use calcine_physics::sphere;
 
 use super::chemistry::SolidChemistry;
 use super::passage::{FilmFlow, ParticleSurroundings};
-use super::rates::RateState;
+use super::rates::{RateState, constants_of};
 use super::surface::SurfaceBalance;
 
 /// Most rounds by which the flow is found, and the change in a round, of the velocity over the largest coefficient of a
@@ -30,6 +30,10 @@ pub(super) struct FilmBalance {
     fractions: Vec<Dual<2>>,
     /// Rates of all reactions in mol/s at the point, with their slopes there.
     rates: Vec<Dual<2>>,
+    /// Constants of the reactions at the particle's temperature.
+    known: Vec<[f64; 2]>,
+    /// Coefficients of the film at its temperature.
+    film: Vec<FilmCoefficient>,
     /// The gas at the surface.
     surface: SurfaceBalance<Dual<2>>,
     /// Velocity in m/s and lightening about which rates are known.
@@ -71,6 +75,30 @@ impl FilmBalance {
         duals(state.fractions, &mut self.fractions);
         let none = Dual::constant(0.0);
         self.rates.resize(chemistry.reactions.len(), none);
+        // The temperature stays as it is on the way.
+        let known = chemistry.reactions.iter();
+        self.known.clear();
+        self.known.extend(known.map(|one| constants_of(one, state.temperature)));
+        let at = around.film_temperature(state.temperature);
+        let mut film = std::mem::take(&mut self.film);
+        film.clear();
+        let each = around.film.iter().map(|one| one.of(at));
+        film.extend(each.map(FilmCoefficient::constant));
+        let around = &ParticleSurroundings {
+            film: &film,
+            ..*around
+        };
+        self.solve_at(chemistry, around, state, out);
+        self.film = film;
+    }
+
+    fn solve_at(
+        &mut self,
+        chemistry: &SolidChemistry,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, f64>,
+        out: &mut [f64],
+    ) {
         let bounds = coefficients(around, state);
         let point = self.point;
         let mut residual = self.find(chemistry, around, state, (point, bounds));
@@ -221,6 +249,7 @@ impl FilmBalance {
             film_flow: flow([Dual::along(velocity, 0), Dual::along(lightening, 1)]),
             trace: state.trace,
             fastest: state.fastest,
+            known: Some(&self.known),
         };
         chemistry.rates(around, &state, &mut self.surface, &mut self.rates);
         residual(chemistry, around, &state, &self.rates)

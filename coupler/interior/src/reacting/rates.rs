@@ -40,9 +40,29 @@ pub struct RateState<'a, N> {
     /// How much faster than film and a layer of the particle's size (β + D/R) an interface is at most: a resistance of this
     /// share of theirs is in series with its own. So amounts of what fast reactions use as it is made stay within what digits resolve.
     pub fastest: f64,
+    /// Of each reaction at a shrinking core its rate constant in m/s and 1/K where the temperature stays as it is; they are
+    /// evaluated where nothing is given.
+    pub known: Option<&'a [[f64; 2]]>,
+}
+
+/// Rate constant in m/s and 1/K of a reaction at a shrinking core; of others no rate constant.
+pub(super) fn constants_of<N: Number>(reaction: &Reaction, temperature: N) -> [N; 2] {
+    let Rate::Core { rate_constant, .. } = &reaction.rate else {
+        return [N::constant(0.0); 2];
+    };
+    let back = reaction.equilibrium.inverse(temperature);
+    [rate_constant.of(temperature), back]
 }
 
 impl<N: Number> RateState<'_, N> {
+    /// [`constants_of`] a reaction at the temperature at hand.
+    fn constants(&self, index: usize, reaction: &Reaction) -> [N; 2] {
+        match self.known {
+            Some(known) => known[index].map(N::constant),
+            None => constants_of(reaction, self.temperature),
+        }
+    }
+
     /// The factor of what uses a solid by an order below one ([`TRACE`]).
     fn presence(&self, solid: usize, order: f64) -> N {
         let amount = self.amounts[solid];
@@ -193,7 +213,7 @@ impl SolidChemistry {
                         && state.presence(solids[0], 0.0).value()
                             != state.presence(solids[1], 0.0).value();
                     (interface.rate_constant, interface.equilibrium) = interface_of(
-                        &self.reactions[index],
+                        (&self.reactions[index], index),
                         (path, passed.times(state.fastest)),
                         solids,
                         around,
@@ -239,24 +259,23 @@ impl<N: Number> CoreLadder<'_, N> {
 /// Rate constant of an interface, both directions together, and the concentration at which it rests; between two solids,
 /// the inner one first.
 fn interface_of<N: Number>(
-    reaction: &Reaction,
+    (reaction, index): (&Reaction, usize),
     (path, fastest): (&GasPath, N),
     [inner, outer]: [usize; 2],
     around: &ParticleSurroundings<'_>,
     state: &RateState<'_, N>,
     end: &LadderEnd<N>,
 ) -> (N, N) {
-    let Rate::Core { rate_constant, .. } = &reaction.rate else {
+    let Rate::Core { .. } = &reaction.rate else {
         return (N::constant(0.0), N::constant(0.0));
     };
     let moles = moles(reaction, path.key);
-    let back = reaction.equilibrium.inverse(state.temperature);
+    let [forward, back] = state.constants(index, reaction);
     // K is that of the equation as it is written; the ratio of its two gases at rest is that of one mole of them.
     let back = match path.product {
-        Some(_) if moles != -1.0 && back.value() > 0.0 => back.ln().times(-1.0 / moles).exp(),
+        Some(_) if back.value() > 0.0 => of_one_mole(back, moles),
         _ => back,
     };
-    let forward = rate_constant.of(state.temperature);
     let turnover = match path.product {
         Some(_) => forward * (N::constant(1.0) + back),
         None => forward,
@@ -278,7 +297,7 @@ fn interface_of<N: Number>(
         return (forward * together, at_rest);
     }
     let at_rest = if back.value() > 0.0 {
-        let power = back.ln().times(-1.0 / moles).exp();
+        let power = of_one_mole(back, moles);
         let all_gas = state
             .temperature
             .inverse()
@@ -299,6 +318,17 @@ const LEAST: f64 = 1e-20;
 /// size are below round-off, however fast the interface.
 fn barely_there<N: Number>(presence: N) -> N {
     presence + N::constant((LEAST - presence.value()).max(0.0))
+}
+
+/// 1/K^(1/ν) of an equation in which a gas has so many moles ν, below zero where it is used.
+fn of_one_mole<N: Number>(back: N, moles: f64) -> N {
+    if moles == -1.0 {
+        back
+    } else if moles == 1.0 {
+        back.inverse()
+    } else {
+        back.ln().times(-1.0 / moles).exp()
+    }
 }
 
 /// Rate in mol/s of a reaction in the whole volume of a particle that no other shares a gas with: of its key gas alone.

@@ -38,7 +38,7 @@ impl SpeciesEquations {
         }
         let (cells, species) = (frame.grid.cells(), frame.species());
         let mut sources = self.transport(frame, material, share, now);
-        self.preconditioner.update(&self.matrix);
+        self.preconditioner.expire();
         let target = SolveTolerance {
             absolute: goal.absolute * self.throughput(frame, now, species - 1),
             of_terms: 0.0,

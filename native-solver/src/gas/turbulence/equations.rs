@@ -245,7 +245,7 @@ impl KEpsilonEquations {
             let FaceCondition::Wall {
                 sticks: Some(velocity),
                 ..
-            } = step.boundary.at(face)
+            } = *step.boundary.at(face)
             else {
                 continue;
             };
@@ -352,7 +352,7 @@ impl KEpsilonEquations {
         scalar: &Scalar<'_, S>,
     ) -> Vec<f64> {
         let (grid, boundary) = (step.grid, step.boundary);
-        let inlet = |index: usize| match boundary.at(index) {
+        let inlet = |index: usize| match *boundary.at(index) {
             FaceCondition::Inlet {
                 superficial_velocity,
                 ..
@@ -405,7 +405,7 @@ impl KEpsilonEquations {
             iterations: step.iterations,
         };
         let mut new = scalar.old.to_vec();
-        self.preconditioner.update(&self.matrix);
+        self.preconditioner.expire();
         let Self {
             matrix,
             preconditioner,
@@ -446,7 +446,7 @@ impl KEpsilonEquations {
                     weight * coefficient(face.owner) + (1.0 - weight) * coefficient(face.neighbour);
                 return conductance(face, mean);
             }
-            match step.boundary.at(index) {
+            match *step.boundary.at(index) {
                 FaceCondition::Inlet { gas, .. } => {
                     let laminar = now.void_fraction[face.owner] * gas.viscosity;
                     let eddy = eddies.boundary[index - grid.internal] / prandtl;
@@ -495,7 +495,7 @@ fn divergence(grid: &MeshGraph, boundary: &Boundaries, now: &GasState, cell: usi
             let density = weight * held(face.owner) + (1.0 - weight) * held(face.neighbour);
             return sum + link.sign * now.flux[index] / density;
         }
-        match boundary.at(index) {
+        match *boundary.at(index) {
             FaceCondition::Inlet {
                 superficial_velocity,
                 ..

@@ -79,7 +79,7 @@ fn fill_viscosity(
         if !turbulence.reaches(pores) {
             return 0.0;
         }
-        match boundary.at(index) {
+        match *boundary.at(index) {
             FaceCondition::Inlet {
                 superficial_velocity,
                 mass_flux,

@@ -99,7 +99,7 @@ pub fn viscosity(
     index: usize,
     cell: usize,
 ) -> f64 {
-    let temperature = match boundary.at(index) {
+    let temperature = match *boundary.at(index) {
         FaceCondition::Wall {
             heat: HeatCondition::Temperature(temperature),
             ..

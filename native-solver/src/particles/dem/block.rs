@@ -24,6 +24,9 @@ const SIZES: [usize; 2] = [256, 2048];
 /// and two for the other.
 const BLOCKS: usize = 16;
 
+/// Up to so many particles are in the caches anyway, with their contacts.
+const NEAR: usize = 4096;
+
 /// Particles per block of so many; it depends on nothing else, so that sums do not depend on the number of
 /// threads.
 pub fn size(count: usize) -> usize {
@@ -66,7 +69,9 @@ impl Block {
         scene: &ForceContext<'_, L>,
         outgoing: &mut [SphereLoad],
     ) {
-        ahead(scene.spheres, self.begin..self.begin + self.load.len());
+        if scene.spheres.len() > NEAR {
+            ahead(scene.spheres, self.begin..self.begin + self.load.len());
+        }
         let held = std::mem::take(&mut self.budget.elastic_tangential);
         self.budget.elastic_normal = 0.0;
         self.load.fill(SphereLoad::default());

@@ -37,7 +37,6 @@ struct Batch {
     force: [Lane; 3],
     twist: [Lane; 3],
     arm: [Lane; 2],
-    overlap: Lane,
     beyond: Lane,
 }
 
@@ -61,12 +60,13 @@ pub fn pairs<L: ContactModel>(
             batch.gather(lane, touch, scene, candidates);
         }
         batch.evaluate(scene);
+        if batch.is_deep() {
+            let pairs = chunk.iter().map(|touch| candidates.pair[touch.index()]);
+            deep::note_all(deep, scene.spheres, pairs);
+        }
         for (lane, touch) in chunk.iter().enumerate() {
             let k = touch.index();
             let pair = candidates.pair[k].map(|index| index as usize);
-            if batch.beyond[lane] > 0.0 {
-                deep::note(deep, scene.spheres, pair, batch.overlap[lane]);
-            }
             candidates.shift[k] = at(&batch.shift, lane);
             let (force, twist) = (at(&batch.force, lane), at(&batch.twist, lane));
             let one = SphereLoad {
@@ -109,6 +109,14 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 impl Batch {
+    /// True where one of the contacts is pressed in farther than its law holds.
+    #[inline(always)]
+    fn is_deep(&self) -> bool {
+        self.beyond
+            .iter()
+            .fold(false, |deep, &beyond| deep | (beyond > 0.0))
+    }
+
     #[inline(always)]
     fn gather<L>(
         &mut self,
@@ -228,7 +236,6 @@ impl Batch {
             }
             self.arm[0][l] = arms[0];
             self.arm[1][l] = arms[1];
-            self.overlap[l] = overlap;
             self.beyond[l] = deep::beyond(overlap, [ra, rb]);
         }
     }

@@ -15,7 +15,7 @@ use super::sphere::{SphereDrag, SphereMotion, SpherePosition};
 pub struct KickInputs {
     /// Half a step in s.
     pub half: f64,
-    /// Number of half kicks: the last of one step and the first of the next are done together.
+    /// Number of half kicks, one or two: the last of one step and the first of the next are done together.
     pub times: u32,
     /// Gravity in m/s².
     pub gravity: Vec3,
@@ -42,7 +42,9 @@ impl Kick for ForceKick {
         };
         let change = (force * moves.inverse_mass + gravity) * now.half;
         let turn = torque * (moves.inverse_inertia * now.half);
-        for _ in 0..now.times {
+        moves.velocity += change;
+        moves.spin += turn;
+        if now.times > 1 {
             moves.velocity += change;
             moves.spin += turn;
         }
@@ -83,6 +85,51 @@ pub fn drift<const BUDGET: bool, K: Kick>(
     push: &[Vec3],
     kicks: impl IntoIterator<Item = K>,
 ) -> f64 {
+    pulp::Arch::new().dispatch(Drift::<BUDGET, _> {
+        block,
+        now,
+        place,
+        moves,
+        push,
+        kicks: kicks.into_iter(),
+    })
+}
+
+/// The work of [`drift`], compiled for each set of vector instructions.
+struct Drift<'a, const BUDGET: bool, I> {
+    block: &'a mut Block,
+    now: &'a KickInputs,
+    place: &'a mut [SpherePosition],
+    moves: &'a mut [SphereMotion],
+    push: &'a [Vec3],
+    kicks: I,
+}
+
+impl<const BUDGET: bool, I: Iterator<Item: Kick>> pulp::WithSimd for Drift<'_, BUDGET, I> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> f64 {
+        let Self {
+            block,
+            now,
+            place,
+            moves,
+            push,
+            kicks,
+        } = self;
+        move_all::<BUDGET, _>(block, now, (place, moves), push, kicks)
+    }
+}
+
+#[inline(always)]
+fn move_all<const BUDGET: bool, K: Kick>(
+    block: &mut Block,
+    now: &KickInputs,
+    (place, moves): (&mut [SpherePosition], &mut [SphereMotion]),
+    push: &[Vec3],
+    kicks: impl Iterator<Item = K>,
+) -> f64 {
     let step = 2.0 * now.half;
     let mut fastest = 0.0f64;
     let mut held = Vec3::zeros();
@@ -90,7 +137,10 @@ pub fn drift<const BUDGET: bool, K: Kick>(
     for ((((load, place), moves), push), kick) in spheres {
         let impulse = kick.kick(now, moves, load.force + push, load.torque);
         place.centre += moves.velocity * step;
-        fastest = fastest.max(moves.velocity.norm_squared());
+        let square = moves.velocity.norm_squared();
+        if square > fastest {
+            fastest = square;
+        }
         if moves.inverse_mass == 0.0 {
             held += load.force;
         }

@@ -118,6 +118,9 @@ impl Spheres {
 
     /// Makes the images of all spheres that may touch another across a periodic plane within a skin in m.
     pub fn add_images(&mut self, periodicity: &Periodicity, skin: f64) {
+        if periodicity.is_none() {
+            return;
+        }
         let radii = self.place.iter().map(|place| place.radius);
         let largest = radii.fold(0.0, f64::max);
         for index in 0..self.len() {

@@ -244,6 +244,7 @@ impl ParticleSystem<'_> {
             film_flow: FilmFlow::still(),
             trace: self.trace,
             fastest: self.fastest,
+            known: None,
         };
         if chemistry.makes_film_flow(around) {
             let (film, rates) = (&mut self.buffers.film, &mut self.buffers.rates);
@@ -472,6 +473,7 @@ impl ParticleSystem<'_> {
             film_flow: buffers.film.point(),
             trace: self.trace,
             fastest: self.fastest,
+            known: None,
         };
         let around = &self.start.around;
         let surface = &mut buffers.surface_dual;

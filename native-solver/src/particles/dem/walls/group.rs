@@ -121,6 +121,7 @@ impl WallContacts {
         if scene.walls.iter().any(|wall| wall.servo.is_some()) {
             self.pressed.resize(scene.walls.len(), Vec3::zeros());
         }
+        let presses = !self.pressed.is_empty();
         for (k, group) in self.groups.iter().enumerate() {
             let before = load[group.particle as usize].force;
             let wall = &scene.walls[group.wall as usize];
@@ -164,8 +165,8 @@ impl WallContacts {
                     }
                 }
             }
-            if let Some(pressed) = self.pressed.get_mut(group.wall as usize) {
-                *pressed -= load.force - before;
+            if presses {
+                self.pressed[group.wall as usize] -= load.force - before;
             }
         }
     }
