@@ -68,11 +68,7 @@ impl ValidCase {
         case.warnings = warnings(
             &case,
             &prepared.mesh,
-            (
-                &prepared.particles,
-                &prepared.temperature,
-                &prepared.notes,
-            ),
+            (&prepared.particles, &prepared.temperature, &prepared.notes),
             &packing,
         );
         Ok(Self {

@@ -22,9 +22,7 @@ pub(super) fn told<'a>(
     let (row, density) = entries.find_map(|(entry, drawn)| {
         let density = match entry.heaviness? {
             Heaviness::Density(density) => density,
-            Heaviness::Mass(mass) => {
-                mass / sphere::volume(0.5 * entry.diameter.unwrap_or(*drawn))
-            }
+            Heaviness::Mass(mass) => mass / sphere::volume(0.5 * entry.diameter.unwrap_or(*drawn)),
         };
         let differs = (density - material.density).abs() > SAME * material.density;
         differs.then_some((entry.row, density))

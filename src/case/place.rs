@@ -11,8 +11,8 @@ use super::bed::{self, Choice};
 use super::model::{
     Case, MeshSpec, MotionSpec, PackingSection, PlacementSpec, Population, RandomAmount,
 };
-use super::overlap;
 use super::other_density;
+use super::overlap;
 use super::place_error::PlaceError;
 use super::units::shown;
 use crate::laws;

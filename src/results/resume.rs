@@ -111,8 +111,7 @@ fn check_snapshots(results: &Path, sums: &[[String; 2]]) -> Result<(), ResultsEr
         }
         Ok(())
     };
-    let found: Vec<Result<(), ResultsError>> =
-        sums.par_iter().enumerate().map(check).collect();
+    let found: Vec<Result<(), ResultsError>> = sums.par_iter().enumerate().map(check).collect();
     found.into_iter().collect()
 }
 

@@ -374,7 +374,6 @@ impl Enthalpy {
             &mut now.enthalpy,
             target,
         );
-        self.record(frame, now);
         let species = frame.species();
         let GasState {
             temperature,
@@ -393,7 +392,8 @@ impl Enthalpy {
 
     /// Gives each cell what flows and particles brought it beyond m h: what the solve of the equation at hand left of it. So the energy that cells
     /// hold is what came and went to round-off, however closely the equation is solved; the next window begins with it.
-    pub fn carry_remainder(&self, frame: &AttemptFrame<'_>, now: &mut GasState) {
+    pub fn carry_remainder(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) {
+        self.record(frame, now);
         let enthalpy = &now.enthalpy;
         fill(&mut now.heat_remainder, |cell| {
             let left = self.source[cell] - self.matrix.row_times(cell, enthalpy);

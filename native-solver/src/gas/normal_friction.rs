@@ -105,7 +105,9 @@ impl NormalFriction {
     /// True where N has nothing of velocities along the faces of cells: no wall is without friction, or the faces of the cells at
     /// them are parallel or at right angles to them.
     pub fn is_square(&self) -> bool {
-        self.slipping.as_ref().is_none_or(|slipping| !slipping.oblique)
+        self.slipping
+            .as_ref()
+            .is_none_or(|slipping| !slipping.oblique)
     }
 
     /// N of a cell in kg/s.

@@ -79,6 +79,8 @@ pub struct Equations {
     /// What they have taken so far.
     pub phases: GasPhases,
     watch: Stopwatch,
+    /// Windows so far.
+    windows: u32,
 }
 
 impl Equations {
@@ -99,6 +101,7 @@ impl Equations {
             closer: 1.0,
             phases: GasPhases::default(),
             watch: Stopwatch::new(),
+            windows: 0,
         }
     }
 
@@ -112,6 +115,7 @@ impl Equations {
     ) -> Result<Convergence, GasFailure> {
         let mut convergence = Convergence::default();
         if begin == Begin::Window {
+            self.windows = self.windows.wrapping_add(1);
             self.pressure.forget(frame);
             self.momentum.begin();
             self.enthalpy.begin();
@@ -123,7 +127,7 @@ impl Equations {
         self.chemistry.begin(frame, begin != Begin::Window);
         self.share = 1.0;
         self.closer = 1.0;
-        self.watch = Stopwatch::new();
+        self.watch = Stopwatch::of_window(self.windows, frame.grid.cells());
         if frame.grid.orthogonal {
             self.assess_flow(frame, now);
         } else {

@@ -39,6 +39,10 @@ pub struct Face {
     pub owner_skew: Vec3,
     /// Part of x_N − x_f along the face, in m; zero on the boundary.
     pub neighbour_skew: Vec3,
+    /// Weight of the owner in linear interpolation.
+    weight: f64,
+    /// Area over distance in m.
+    conductance: f64,
 }
 
 impl Face {
@@ -58,7 +62,13 @@ impl Face {
     /// Weight of the owner in linear interpolation.
     #[inline]
     pub fn owner_weight(&self) -> f64 {
-        self.neighbour_distance / self.distance()
+        self.weight
+    }
+
+    /// Area over distance in m: what a unit of conductivity conducts.
+    #[inline]
+    pub fn conductance(&self) -> f64 {
+        self.conductance
     }
 }
 
@@ -228,6 +238,8 @@ fn measure(mesh: &Mesh, face: usize) -> Face {
         neighbour_distance,
         owner_skew: limited(inner - owner_distance * normal, owner_distance),
         neighbour_skew: limited(outer - neighbour_distance * normal, neighbour_distance),
+        weight: neighbour_distance / (owner_distance + neighbour_distance),
+        conductance: area / (owner_distance + neighbour_distance),
     }
 }
 

@@ -96,5 +96,5 @@ where
 /// Conductance of a face, coefficient · area / distance.
 #[inline]
 pub fn conductance(face: &Face, coefficient: f64) -> f64 {
-    coefficient * face.area / face.distance()
+    coefficient * face.conductance()
 }

@@ -319,8 +319,8 @@ pub(super) fn is_read(name: &str) -> bool {
             &TYPE,
             &ID,
         ]
-            .iter()
-            .any(|names| names.contains(&name))
+        .iter()
+        .any(|names| names.contains(&name))
 }
 
 /// A number of a text file.

@@ -78,7 +78,8 @@ impl FilmBalance {
         // The temperature stays as it is on the way.
         let known = chemistry.reactions.iter();
         self.known.clear();
-        self.known.extend(known.map(|one| constants_of(one, state.temperature)));
+        self.known
+            .extend(known.map(|one| constants_of(one, state.temperature)));
         let at = around.film_temperature(state.temperature);
         let mut film = std::mem::take(&mut self.film);
         film.clear();

@@ -13,11 +13,7 @@ pub fn beyond(overlap: f64, radii: [f64; 2]) -> f64 {
 
 /// Notes those of these pairs of spheres whose overlaps are beyond it.
 #[cold]
-pub fn note_all(
-    deep: &mut Excursion,
-    spheres: &Spheres,
-    pairs: impl Iterator<Item = [u32; 2]>,
-) {
+pub fn note_all(deep: &mut Excursion, spheres: &Spheres, pairs: impl Iterator<Item = [u32; 2]>) {
     for pair in pairs {
         let pair = pair.map(|index| index as usize);
         let [one, other] = pair.map(|index| spheres.place[index]);
