@@ -1,15 +1,99 @@
 //! The granulation plant of Dyssol, converged (docs/theory.md, FLS-V2, FLS-V3).
 
-use calcine_flowsheet::distribution::{mean_diameter, normal_shares};
-use calcine_flowsheet::mill::{BondLaw, BondLength, BondNormal};
+use std::fmt::Display;
+
+use calcine_flowsheet::distribution::{mean_diameter, normal_shares, quantile};
+use calcine_flowsheet::mill::{BondLaw, BondLength, BondNormal, MillLaw};
 use calcine_flowsheet::population::GrowthScheme;
 use calcine_flowsheet::screen::Plitt;
 use calcine_flowsheet::units::{Granulator, Mill, Mixer, PlantInlet, PlantOutlet, Screen};
 use calcine_flowsheet::{
-    Connection, Integrator, Plant, PlantRun, ProcessUnit, SizeGrid, StreamLayout, Timetable,
+    Connection, Integrator, Plant, PlantError, PlantRun, ProcessUnit, SizeGrid, StreamLayout,
+    Timetable, Transformation, UnitView,
 };
 
 use crate::support::{air, solid, solids, water};
+
+/// Dyssol's mill: Bond's law with the feed's x80 half a class lower, as its cumulative shares stand at the middles of classes.
+struct HalfAClassLower(BondNormal);
+
+impl MillLaw for HalfAClassLower {
+    fn transformation(
+        &self,
+        grid: &SizeGrid,
+        feed: &[f64],
+        place: &dyn Display,
+    ) -> Result<Transformation, PlantError> {
+        let size = quantile(grid, feed, 0.8).unwrap() - 0.5 * grid.width(0);
+        let made = self.0.bond.product_size(size, feed.iter().sum());
+        let mean = made - 0.83 * self.0.deviation;
+        let row = normal_shares(grid, mean, self.0.deviation, place)?;
+        Ok(Transformation::Uniform(row))
+    }
+
+    fn power(&self) -> f64 {
+        self.0.bond.power
+    }
+}
+
+/// Solids of the bed in kg, and of a second of the spray, which has as much liquid.
+const HELD: f64 = 20.0;
+const SPRAYED: f64 = 0.05;
+
+/// Dyssol's granulator: one second of what enters is mixed into the bed, and its mass put back to what it was, before the
+/// product takes its distribution; the next step begins with that bed.
+struct WithASecondOfFeed {
+    granulator: Granulator,
+    keeps_liquid: bool,
+}
+
+impl ProcessUnit for WithASecondOfFeed {
+    fn inlets(&self) -> Vec<String> {
+        self.granulator.inlets()
+    }
+    fn outlets(&self) -> Vec<String> {
+        self.granulator.outlets()
+    }
+    fn prepare(&mut self, layout: &StreamLayout, name: &str) -> Result<(), PlantError> {
+        self.granulator.prepare(layout, name)
+    }
+    fn unknowns(&self, layout: &StreamLayout) -> usize {
+        self.granulator.unknowns(layout)
+    }
+    fn start(&self, layout: &StreamLayout, state: &mut [f64]) {
+        self.granulator.start(layout, state);
+    }
+    fn produce(&self, view: &UnitView<'_>, out: &mut [f64]) -> Result<(), PlantError> {
+        self.granulator.produce(view, out)?;
+        let solids = view.layout.solids();
+        let feed = &view.inlet(0)[..solids];
+        let (leaves, enters): (f64, f64) = (out[..solids].iter().sum(), feed.iter().sum());
+        // Liquid pushes solids out, step by step, until there is as much of it in the bed as in what enters.
+        let solid = match self.keeps_liquid && view.time > 0.0 {
+            true => (enters + SPRAYED) / (enters + 2.0 * SPRAYED),
+            false => 1.0,
+        };
+        let held = HELD * solid + SPRAYED;
+        for (out, feed) in out[..solids].iter_mut().zip(feed) {
+            *out = (*out * held + leaves * feed) / (held + enters);
+        }
+        Ok(())
+    }
+    fn rates(&self, view: &UnitView<'_>, out: &[f64], rates: &mut [f64]) -> Result<(), PlantError> {
+        let mut own = vec![0.0; out.len()];
+        self.granulator.produce(view, &mut own)?;
+        self.granulator.rates(view, &own, rates)
+    }
+    fn held(&self, layout: &StreamLayout, state: &[f64], held: &mut [f64]) {
+        self.granulator.held(layout, state, held);
+    }
+    fn scales(&self, layout: &StreamLayout, scales: &mut [f64]) {
+        self.granulator.scales(layout, scales);
+    }
+    fn fastest(&self, view: &UnitView<'_>, out: &[f64]) -> f64 {
+        self.granulator.fastest(view, out)
+    }
+}
 
 /// Time of the figures in s.
 const END: f64 = 3500.0;
@@ -20,6 +104,27 @@ pub fn plant(classes: usize, scale: f64) -> Plant {
 
 /// All flows and the mill's power times `scale`.
 pub fn plant_by(classes: usize, scale: f64, scheme: GrowthScheme) -> Plant {
+    plant_as_dyssols(classes, scale, scheme, AsDyssol::default())
+}
+
+/// What of Dyssol's units a plant has beside its scheme of growth.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AsDyssol {
+    /// One second of what enters is mixed into the bed before the product takes its distribution.
+    pub second: bool,
+    /// The liquid of that second stays in the bed.
+    pub liquid: bool,
+    /// The mill finds the feed's x80 half a class lower.
+    pub mill: bool,
+}
+
+/// The same with units as Dyssol has them.
+pub fn plant_as_dyssols(
+    classes: usize,
+    scale: f64,
+    scheme: GrowthScheme,
+    as_dyssol: AsDyssol,
+) -> Plant {
     let grid = SizeGrid::uniform(classes, 0.0, 4e-3).unwrap();
     let layout = StreamLayout::new(
         grid.clone(),
@@ -45,6 +150,13 @@ pub fn plant_by(classes: usize, scale: f64, scheme: GrowthScheme) -> Plant {
         power: 800.0 * scale,
         length: BondLength::Millimetre,
     };
+    let bond = BondNormal {
+        bond,
+        deviation: 1e-4,
+    };
+    let granulator = Granulator::new(content, 1320.0)
+        .with_moisture(0.01)
+        .with_scheme(scheme);
     let inlet = |stream| -> Box<dyn ProcessUnit> {
         Box::new(PlantInlet::new(stream, Timetable::constant(1.0)))
     };
@@ -61,20 +173,22 @@ pub fn plant_by(classes: usize, scale: f64, scheme: GrowthScheme) -> Plant {
         ("Mixer1".into(), Box::new(Mixer { inlets: 2 })),
         (
             "Granulator".into(),
-            Box::new(
-                Granulator::new(content, 1320.0)
-                    .with_moisture(0.01)
-                    .with_scheme(scheme),
-            ),
+            match as_dyssol.second {
+                true => Box::new(WithASecondOfFeed {
+                    granulator,
+                    keeps_liquid: as_dyssol.liquid,
+                }),
+                false => Box::new(granulator),
+            },
         ),
         ("Screen1".into(), screen(2.5e-3)),
         ("Screen2".into(), screen(1e-3)),
         (
             "Crusher".into(),
-            Box::new(Mill::new(Box::new(BondNormal {
-                bond,
-                deviation: 1e-4,
-            }))),
+            Box::new(Mill::new(match as_dyssol.mill {
+                true => Box::new(HalfAClassLower(bond)),
+                false => Box::new(bond),
+            })),
         ),
         ("Mixer2".into(), Box::new(Mixer { inlets: 2 })),
         ("OutDust".into(), Box::new(PlantOutlet)),
