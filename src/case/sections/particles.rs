@@ -148,6 +148,21 @@ fn coefficients(table: &TableReader<'_>, key: &str) -> Option<[f64; 7]> {
     seven
 }
 
+/// The index of the material that a table names.
+pub(super) fn material_of(table: &TableReader<'_>, materials: &[MaterialSpec]) -> Option<usize> {
+    let name = table.text("material")?;
+    let found = materials.iter().position(|one| one.name == name);
+    if found.is_none() {
+        let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
+        let help = match known.is_empty() {
+            true => format!("the case has no materials; write a table [materials.{name}]"),
+            false => format!("the materials are {}", known.join(", ")),
+        };
+        table.fail("material", format!("is \"{name}\""), help);
+    }
+    found
+}
+
 pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Vec<ContactSpec> {
     root.tables("contacts")
         .iter()
@@ -216,21 +231,7 @@ fn population(
     folder: &Path,
 ) -> Option<Population> {
     let name = table.text("name");
-    let material = table.text("material").and_then(|name| {
-        let found = materials.iter().position(|material| material.name == name);
-        if found.is_none() {
-            let known: Vec<&str> = materials
-                .iter()
-                .map(|material| material.name.as_str())
-                .collect();
-            table.fail(
-                "material",
-                format!("is \"{name}\""),
-                format!("the materials are {}", known.join(", ")),
-            );
-        }
-        found
-    });
+    let material = material_of(table, materials);
     let sizes = sizes(table);
     let motion = table.choice("motion");
     let velocity = table.vector("velocity");

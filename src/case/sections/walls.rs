@@ -11,6 +11,7 @@ use calcine_coupler::setup::Schedule;
 
 use super::common::existing;
 use super::heat;
+use super::particles::material_of;
 use crate::case::model::{MaterialSpec, MeshSpec};
 use crate::case::stl;
 use crate::case::table::TableReader;
@@ -29,15 +30,7 @@ pub(super) fn walls(
     let mut left_out = Vec::new();
     for table in root.tables("walls") {
         let name = table.text("name");
-        let material = table.text("material").and_then(|name| {
-            let found = materials.iter().position(|one| one.name == name);
-            if found.is_none() {
-                let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
-                let help = format!("the materials are {}", known.join(", "));
-                table.fail("material", format!("is \"{name}\""), help);
-            }
-            found
-        });
+        let material = material_of(&table, materials);
         let shapes = shapes(&table, mesh, folder, &mut left_out);
         let motion = motion(&table);
         let temperature = table.schedule("temperature");
