@@ -253,16 +253,11 @@ impl Momentum {
         now: &mut GasState,
     ) -> u32 {
         let mut iterations = 0;
+        // True where the factors at hand are not of A.
+        let mut stale = true;
         self.diagonal.clear();
         self.diagonal.extend_from_slice(self.matrix.diagonal());
         for axis in 0..3 {
-            let damps = self.normal.damps(axis);
-            if damps {
-                self.normal.add(axis, self.matrix.diagonal_mut());
-            }
-            if axis == 0 || damps || self.normal.damps(axis - 1) {
-                self.preconditioner.expire();
-            }
             let (source, normal, velocity) = (&self.source, &self.normal, &now.velocity);
             let gradient = &now.pressure_gradient;
             fill(&mut self.right, |cell| {
@@ -272,6 +267,19 @@ impl Momentum {
                     - normal.by_others(cell, axis, &velocity[cell])
             });
             fill(&mut self.component, |cell| velocity[cell][axis]);
+            // Nothing moves this way, nor is it pushed.
+            let mut all = self.right.iter().chain(&self.component);
+            if all.all(|value| *value == 0.0) {
+                continue;
+            }
+            let damps = self.normal.damps(axis);
+            if damps {
+                self.normal.add(axis, self.matrix.diagonal_mut());
+            }
+            if stale || damps {
+                self.preconditioner.expire();
+            }
+            stale = damps;
             let target = SolveTolerance {
                 absolute: 0.0,
                 of_terms: tolerance,

@@ -198,6 +198,7 @@ fn touching(
 }
 
 /// The memory of a contact: of the slot that touched in the last evaluation near this point, else a free one.
+#[inline(always)]
 fn memory(
     slots: &mut [WallContactMemory],
     point: Vec3,
@@ -228,6 +229,7 @@ fn memory(
     Some(slot)
 }
 
+#[inline(always)]
 #[allow(clippy::too_many_arguments)]
 fn contact<L: ContactModel, const BUDGET: bool>(
     scene: &ForceContext<'_, L>,
