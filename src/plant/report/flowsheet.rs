@@ -10,9 +10,9 @@ use crate::case::plant::PlantCase;
 use crate::report::number::figure;
 use crate::report::page::escape;
 
-/// Size of a unit's box, and of the space about it.
+/// Size of a unit's box, and distance from one to the next: a flow and a size of three digits each fit between.
 const BOX: (f64, f64) = (116.0, 46.0);
-const STEP: (f64, f64) = (262.0, 122.0);
+const STEP: (f64, f64) = (280.0, 122.0);
 /// Distance between streams that flow back, below the units.
 const LANE: f64 = 30.0;
 const MARGIN: f64 = 30.0;

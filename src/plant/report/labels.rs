@@ -7,8 +7,9 @@ const LINE: f64 = 12.0;
 const COVERED: f64 = 1.0;
 const CROSSED: f64 = 60.0;
 const STEP: f64 = 4.0;
-/// Distance between a line and its label.
+/// Distance between a line and its label, and what is left free about a label for the next ones.
 const SPACE: f64 = 5.0;
+const CLEAR: f64 = 8.0;
 
 /// A rectangle: left, top, right, bottom.
 pub(super) type Rectangle = [f64; 4];
@@ -44,12 +45,18 @@ fn shared(one: Rectangle, other: Rectangle) -> f64 {
     width.max(0.0) * height.max(0.0)
 }
 
+/// A rectangle and what is left free about it.
+fn with_room([left, top, right, bottom]: Rectangle) -> Rectangle {
+    [left - CLEAR, top - CLEAR, right + CLEAR, bottom + CLEAR]
+}
+
 fn holds(one: Rectangle, (x, y): (f64, f64)) -> bool {
     (one[0]..=one[2]).contains(&x) && (one[1]..=one[3]).contains(&y)
 }
 
 /// Rectangles of the labels, in their order: each where it covers least, near the middle of its line.
 pub(super) fn placed(all: &[Labelled], boxes: &[Rectangle]) -> Vec<Rectangle> {
+    let mut found = Vec::new();
     let mut taken: Vec<Rectangle> = Vec::new();
     for (own, label) in all.iter().enumerate() {
         let count = label.line.len();
@@ -85,9 +92,11 @@ pub(super) fn placed(all: &[Labelled], boxes: &[Rectangle]) -> Vec<Rectangle> {
                 }
             }
         }
-        taken.push(best.map_or([0.0; 4], |(_, here)| here));
+        let here = best.map_or([0.0; 4], |(_, here)| here);
+        taken.push(with_room(here));
+        found.push(here);
     }
-    taken
+    found
 }
 
 #[cfg(test)]
@@ -110,7 +119,7 @@ mod tests {
         ];
         let boxes = [[-100.0, -30.0, 0.0, 150.0], [200.0, -30.0, 300.0, 150.0]];
         let found = placed(&all, &boxes);
-        assert_eq!(shared(found[0], found[1]), 0.0);
+        assert_eq!(shared(with_room(found[0]), found[1]), 0.0);
         for label in found {
             assert!(
                 boxes.iter().all(|own| shared(label, *own) == 0.0),
