@@ -29,7 +29,7 @@ impl Stopwatch {
             return Self::new();
         }
         Self {
-            last: (number % SAMPLED == 0).then(Instant::now),
+            last: number.is_multiple_of(SAMPLED).then(Instant::now),
             windows: SAMPLED,
         }
     }
