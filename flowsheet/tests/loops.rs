@@ -9,6 +9,7 @@ use calcine_flowsheet::{
     StreamLayout, Timetable,
 };
 
+use crate::plants::oscillating;
 use crate::support::{plain, solid, solids};
 
 fn unit(name: &str, unit: impl ProcessUnit + 'static) -> (String, Box<dyn ProcessUnit>) {
@@ -296,4 +297,28 @@ fn all_that_is_wrong_with_a_plant_is_told_at_once() {
             "{part}: {text:#?}"
         );
     }
+}
+
+/// A bed that loses its spray at 100 s and has it again at 200 s: what its recycle carries dies out, and comes back.
+#[test]
+fn a_recycle_that_nothing_feeds_has_no_flow() {
+    let sprayed = vec![(0.0, 1.0), (100.0, 0.0), (200.0, 1.0)];
+    let sprayed = Timetable::new(sprayed, false, "spray").unwrap();
+    let plant = oscillating(60, 8.0, sprayed, |bed| bed);
+    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-6).unwrap();
+    let flow = |run: &PlantRun, name: &str| {
+        let (_, masses) = run
+            .stream(plant.stream(name).unwrap())
+            .split_last()
+            .unwrap();
+        masses.iter().sum::<f64>()
+    };
+    run.advance(90.0).unwrap();
+    let before = flow(&run, "recycle");
+    assert!(before > 0.0);
+    run.advance(150.0).unwrap();
+    assert_eq!(flow(&run, "recycle"), 0.0);
+    assert_eq!(flow(&run, "product"), 0.0);
+    run.advance(210.0).unwrap();
+    assert!((flow(&run, "recycle") / before - 1.0).abs() < 0.2);
 }

@@ -247,6 +247,7 @@ impl Plant {
         new.resize(x.len(), 0.0);
         iteration.restart();
         let inflow = self.inflow(block, &work.streams);
+        let first = sum_of_sizes(x);
         let mut closure = f64::INFINITY;
         for _ in 0..MOST_ROUNDS {
             for unit in &block.units {
@@ -281,7 +282,39 @@ impl Plant {
             }
             std::mem::swap(x, new);
         }
+        if sum_of_sizes(new) < first && self.dies_out(block, at, y, work, new)? {
+            let closed = block.tears.len();
+            work.closures.extend(std::iter::repeat_n(0.0, closed));
+            return Ok(());
+        }
         Err(self.does_not_close(block, at.time, closure, inflow, [x, new]))
+    }
+
+    /// Whether a recycle without flow stays without flow. What goes round and nothing feeds gets smaller each time, by as much of
+    /// itself: no residual is ever small relative to it.
+    fn dies_out(
+        &self,
+        block: &UnitBlock,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+        new: &[f64],
+    ) -> Result<bool, PlantError> {
+        let width = self.layout.width();
+        let mut made = vec![0.0; new.len()];
+        let kept = work.streams.clone();
+        for tear in &block.tears {
+            work.streams[tear * width..(tear + 1) * width].fill(0.0);
+        }
+        for unit in &block.units {
+            self.produce(*unit, at, y, work)?;
+            self.put(*unit, &block.tears, work, &mut made);
+        }
+        let without = made.iter().all(|flow| *flow == 0.0);
+        if !without {
+            work.streams = kept;
+        }
+        Ok(without)
     }
 
     /// Whether a guess has flows that run backwards where those of a plain way round do not.
