@@ -261,6 +261,7 @@ fn advance(
     let area = sphere::surface(radius);
     let start = ParticleStart {
         amounts,
+        first: amounts,
         temperature: temperature[0],
         around: ParticleSurroundings {
             temperature: kind.temperature,

@@ -4,7 +4,6 @@
 pub mod bed_conductivity;
 pub mod conduction;
 pub mod contact;
-pub mod devolatilisation;
 pub mod dimension;
 pub mod drag;
 pub mod film;

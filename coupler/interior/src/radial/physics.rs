@@ -17,6 +17,14 @@ pub enum RadialError {
         /// The reaction.
         reaction: String,
     },
+    /// A law of thin particles.
+    #[error(
+        "{reaction} goes by a law of thin particles: its water and volatiles have no place in shells"
+    )]
+    Thin {
+        /// The reaction.
+        reaction: String,
+    },
     /// A pressure that lacks of an equilibrium of what.
     #[error(
         "{reaction} goes by equilibrium-pressure, which needs an equation with <=>, one solid on the left and one gas, on the right"
@@ -112,6 +120,9 @@ impl RadialPhysics {
             let used = reaction.solids.iter().find(|one| one.1 < 0.0);
             match &reaction.rate {
                 Rate::Core { .. } => return Err(RadialError::Core { reaction: name() }),
+                Rate::Evaporation(_) | Rate::Devolatilisation(_) => {
+                    return Err(RadialError::Thin { reaction: name() });
+                }
                 Rate::Grains { .. } => {
                     let reverse =
                         reaction.equilibrium != calcine_physics::reaction::Equilibrium::OneWay;

@@ -115,7 +115,9 @@ impl RadialPhysics {
                 .0,
                 &law.gases,
             ),
-            Rate::Core { .. } => (Dual::constant(0.0), &[]),
+            Rate::Core { .. } | Rate::Evaporation(_) | Rate::Devolatilisation(_) => {
+                (Dual::constant(0.0), &[])
+            }
         };
         let forth = GasPowers::of(orders.iter().copied(), state);
         let mut drive = [forth.value, forth.by_temperature];

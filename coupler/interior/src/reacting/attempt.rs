@@ -224,11 +224,19 @@ impl SolidChemistry {
         let (mut brought, mut slope) = (-start.heat * span, capacity * changed[moving]);
         brought +=
             self.enthalpy(start.amounts, end) - self.enthalpy(start.amounts, start.temperature);
+        for (&s, n) in self.moving().iter().zip(unknowns.iter()) {
+            buffers.amounts[s] = *n;
+        }
+        if let Some(bound) = self.bound() {
+            bound.heats(&buffers.amounts, &self.solids, &mut buffers.bound);
+            brought += self.binding(&buffers.amounts) - self.binding(start.amounts);
+        }
         for (j, extent) in extents.iter().enumerate() {
             let warmth = self.warmth(j, end, hot);
+            let bound = buffers.bound.get(j).map_or(0.0, |one| one[0]);
             let [_, by_particle, by_gas] = buffers.warmth[j];
             brought -= extent * warmth;
-            slope -= changed[moving + 1 + j] * warmth
+            slope -= changed[moving + 1 + j] * (warmth + bound)
                 + extent * (by_particle * changed[moving] + by_gas);
         }
         Ok(ParticleOutcome {
@@ -266,6 +274,8 @@ impl SolidChemistry {
     }
 }
 
+#[cfg(test)]
+mod drying_tests;
 #[cfg(test)]
 mod film_tests;
 #[cfg(test)]

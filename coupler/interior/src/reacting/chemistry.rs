@@ -5,6 +5,7 @@ use calcine_physics::reaction::PowerLaw;
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
+use super::drying::BoundWater;
 use super::layers::{Layers, LayersError, gases, layers};
 use super::passage::ParticleSurroundings;
 use super::reaction::{Rate, Reaction};
@@ -36,6 +37,8 @@ pub struct SolidChemistry {
     /// True where reactions change the moles, and the mass, of the gas.
     makes_moles: bool,
     makes_mass: bool,
+    /// What binds water.
+    bound: Option<BoundWater>,
 }
 
 impl SolidChemistry {
@@ -49,6 +52,8 @@ impl SolidChemistry {
         let key = reactions.iter().map(|reaction| match &reaction.rate {
             Rate::Core { .. } => gases(reaction).map(|(key, _)| Some(key)),
             Rate::Power(law) => Ok(key_of(law, reaction)),
+            Rate::Evaporation(_) => Ok(reaction.gases.first().map(|gas| gas.0)),
+            Rate::Devolatilisation(_) => Ok(reaction.gases.first().map(|gas| gas.0)),
             Rate::Conversion { .. } | Rate::Grains { .. } => Ok(None),
         });
         let key = key.collect::<Result<_, _>>()?;
@@ -66,7 +71,9 @@ impl SolidChemistry {
             direction: Vec::new(),
             makes_moles: false,
             makes_mass: false,
+            bound: None,
         };
+        made.bound = BoundWater::of(&made.reactions, &made.solids, made.gas.as_ref());
         made.heat = made.reactions.iter().map(|one| made.heat_of(one)).collect();
         made.index();
         made.shared = SharedFilm::new(&made.reactions, &made.layers);
@@ -212,6 +219,17 @@ impl SolidChemistry {
             }
         }
         -self.heat[reaction] - sensible
+    }
+
+    /// What binds water, if anything does.
+    pub(super) fn bound(&self) -> Option<&BoundWater> {
+        self.bound.as_ref()
+    }
+
+    /// Energy in J of amounts of solids (mol) by what binds their water, zero or below.
+    pub fn binding(&self, amounts: &[f64]) -> f64 {
+        let bound = self.bound.as_ref();
+        bound.map_or(0.0, |bound| bound.energy(amounts, &self.solids))
     }
 
     /// Heat capacity of amounts of solids (mol) in J/K.

@@ -248,6 +248,7 @@ impl FilmBalance {
             fractions: &self.fractions,
             temperature: Dual::constant(state.temperature),
             film_flow: flow([Dual::along(velocity, 0), Dual::along(lightening, 1)]),
+            first: state.first,
             trace: state.trace,
             fastest: state.fastest,
             known: Some(&self.known),

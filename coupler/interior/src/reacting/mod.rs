@@ -14,6 +14,7 @@ pub mod attempt;
 mod book;
 pub mod chemistry;
 mod columns;
+mod drying;
 mod film_balance;
 pub mod layers;
 mod measure;

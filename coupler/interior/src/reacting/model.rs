@@ -121,6 +121,7 @@ impl ParticleModel for Reacting {
             let extents = &self.extents[p * count..(p + 1) * count];
             let heats = extents.iter().zip(&self.chemistry.heat);
             let heat: f64 = heats.map(|(extent, heat)| -extent * heat).sum();
+            let heat = heat + self.unbound(p, extents);
             let capacity = self.secant(p, at[p]);
             let warmed = self.committed.temperature[p] + (heat + self.carried[p] * span) / capacity;
             let (gas, beside) = (around.conductance[p], around.temperature[p]);
@@ -177,8 +178,9 @@ impl ParticleModel for Reacting {
             }
             let gained = (took.heat[p] + took.network[p] + took.carried[p]) * span + released;
             let before = chemistry.enthalpy(held, self.committed.temperature[p]);
-            let enthalpy = before + gained + self.committed.owed[p];
             let amounts = &self.now.amount[p * solids..(p + 1) * solids];
+            let unbound = chemistry.binding(held) - chemistry.binding(amounts);
+            let enthalpy = before + gained + unbound + self.committed.owed[p];
             let followed = self.end[p];
             let found = chemistry.temperature(amounts, enthalpy, followed);
             let near = |kelvin: &f64| (kelvin - followed).abs() <= APART * followed;
@@ -224,6 +226,7 @@ impl ParticleModel for Reacting {
             }
             let sensible = chemistry.enthalpy(now, self.now.temperature[p])
                 - chemistry.enthalpy(before, self.committed.temperature[p])
+                + (chemistry.binding(now) - chemistry.binding(before))
                 + (self.now.owed[p] - self.committed.owed[p]);
             let extents = &self.extents[p * count..(p + 1) * count];
             let turned = extents.iter().zip(&chemistry.heat);
@@ -249,6 +252,7 @@ impl ParticleModel for Reacting {
             }
             all.mass.add(chemistry.mass(amounts));
             let sensible = chemistry.enthalpy(amounts, self.committed.temperature[row])
+                + chemistry.binding(amounts)
                 + self.committed.owed[row];
             all.energy.add(formed + sensible);
         }
@@ -297,6 +301,22 @@ impl ParticleModel for Reacting {
 }
 
 impl Reacting {
+    /// Heat in J that extents in mol set free by what binds water.
+    fn unbound(&self, row: usize, extents: &[f64]) -> f64 {
+        if self.chemistry.bound().is_none() {
+            return 0.0;
+        }
+        let solids = self.chemistry.solids.len();
+        let held = &self.committed.amount[row * solids..(row + 1) * solids];
+        let mut amounts = held.to_vec();
+        for (extent, reaction) in extents.iter().zip(&self.chemistry.reactions) {
+            for &(s, n) in &reaction.solids {
+                amounts[s] += n * extent;
+            }
+        }
+        self.chemistry.binding(held) - self.chemistry.binding(&amounts)
+    }
+
     /// Mean heat capacity in J/K of what a particle held at the last commit, between its temperature then and another
     /// in K.
     fn secant(&self, row: usize, kelvin: f64) -> f64 {

@@ -4,7 +4,7 @@ use calcine_numerics::Number;
 use calcine_physics::gas::GAS_CONSTANT;
 use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
 use calcine_physics::reaction::shrinking_core::{self, Interface, MOST_INTERFACES};
-use calcine_physics::reaction::{PowerLaw, power_law};
+use calcine_physics::reaction::{Devolatilisation, PowerLaw, power_law};
 use calcine_physics::sphere;
 
 use super::chemistry::SolidChemistry;
@@ -35,6 +35,8 @@ pub struct RateState<'a, N> {
     pub temperature: N,
     /// The net flow through its film.
     pub film_flow: FilmFlow<N>,
+    /// Amounts in mol with which the particle came, of which shares are left.
+    pub first: &'a [f64],
     /// The amount in mol that is a trace ([`TRACE`]).
     pub trace: f64,
     /// How much faster than film and a layer of the particle's size (β + D/R) an interface is at most: a resistance of this
@@ -64,7 +66,7 @@ impl<N: Number> RateState<'_, N> {
     }
 
     /// The factor of what uses a solid by an order below one ([`TRACE`]).
-    fn presence(&self, solid: usize, order: f64) -> N {
+    pub(super) fn presence(&self, solid: usize, order: f64) -> N {
         let amount = self.amounts[solid];
         let x = amount.value() / self.trace;
         if x >= 1.0 {
@@ -110,9 +112,19 @@ impl SolidChemistry {
             if self.shared().place(index).is_some() {
                 continue;
             }
-            if let Rate::Power(law) = &reaction.rate {
-                let key = self.key(index);
-                out[index] = power(reaction, (law, key), around, state, (radius, all_gas));
+            match &reaction.rate {
+                Rate::Power(law) => {
+                    let key = self.key(index);
+                    out[index] = power(reaction, (law, key), around, state, (radius, all_gas));
+                }
+                Rate::Evaporation(law) => {
+                    out[index] = self.dry((reaction, law), around, state, (radius, all_gas));
+                }
+                Rate::Devolatilisation(law) => {
+                    out[index] = devolatilise((reaction, law), state);
+                }
+                // Cores follow below; the rest is of particles with shells.
+                Rate::Core { .. } | Rate::Conversion { .. } | Rate::Grains { .. } => {}
             }
         }
         for layers in self.layers() {
@@ -362,6 +374,18 @@ fn power<N: Number>(
     } else {
         rest * power_law::power(surface, order)
     }
+}
+
+/// Rate in mol/s of a reaction by the share of its solid that is left.
+pub(super) fn devolatilise<N: Number>(
+    (reaction, law): (&Reaction, &Devolatilisation),
+    state: &RateState<'_, N>,
+) -> N {
+    let used = reaction.solids.iter().find(|one| one.1 < 0.0);
+    used.map_or(N::constant(0.0), |&(s, n)| {
+        law.turnover(state.amounts[s], state.first[s], state.temperature)
+            .times(-1.0 / n)
+    })
 }
 
 /// Rate of a power law in a particle in mol/s, but for the factors of gases.

@@ -3,8 +3,8 @@
 use calcine_physics::law::LawEntry;
 pub use calcine_physics::reaction::LayerDiffusivity;
 use calcine_physics::reaction::{
-    Arrhenius, Conversion, Equilibrium, GrainSurface, PowerLaw, RateLaw, conversion, power_law,
-    shrinking_core,
+    Arrhenius, Conversion, Devolatilisation, Equilibrium, Evaporation, GrainSurface, PowerLaw,
+    RateLaw, conversion, devolatilisation, evaporation, power_law, shrinking_core,
 };
 
 /// A reaction of solids, and of gases where it is heterogeneous.
@@ -50,6 +50,10 @@ pub enum Rate {
         /// The grains.
         grains: GrainSurface,
     },
+    /// From the wet surface of a particle.
+    Evaporation(Evaporation),
+    /// In the whole of a particle, by what is left of a solid that it came with.
+    Devolatilisation(Devolatilisation),
 }
 
 impl Rate {
@@ -59,6 +63,9 @@ impl Rate {
             Self::Power(_) => &power_law::LAW,
             Self::Core { .. } => &shrinking_core::LAW,
             Self::Grains { .. } => &conversion::EQUILIBRIUM_PRESSURE,
+            Self::Evaporation(law) if law.isotherm => &evaporation::WOOD,
+            Self::Evaporation(_) => &evaporation::LAW,
+            Self::Devolatilisation(_) => &devolatilisation::LAW,
             Self::Conversion { conversion, .. } => match conversion {
                 Conversion::FirstOrder(_) => &conversion::FIRST_ORDER,
                 Conversion::ContractingArea(_) => &conversion::CONTRACTING_AREA,

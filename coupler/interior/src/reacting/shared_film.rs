@@ -95,6 +95,14 @@ fn reach((index, reaction): (usize, &Reaction), layers: &[Layers]) -> Reach {
         kept.map(|one| one.0).collect::<Vec<_>>()
     };
     let moves = gases(&|n| n != 0.0);
+    if let Rate::Devolatilisation(_) = &reaction.rate {
+        return Reach {
+            depends: Vec::new(),
+            moves,
+            simple: true,
+            path: None,
+        };
+    }
     let Rate::Power(law) = &reaction.rate else {
         let mut paths = layers.iter().enumerate().flat_map(|(k, layers)| {
             let each = layers.paths.iter().enumerate();

@@ -9,7 +9,7 @@ use calcine_physics::sphere;
 use super::chemistry::SolidChemistry;
 use super::layers::GasPath;
 use super::passage::{FilmPassage, ParticleSurroundings};
-use super::rates::{CoreLadder, LadderEnd, RateState, moles, prefactor, products};
+use super::rates::{CoreLadder, LadderEnd, RateState, devolatilise, moles, prefactor, products};
 use super::reaction::{Rate, Reaction};
 use super::shared_film::{SharedFilm, zeroth};
 use super::surface::SurfaceBalance;
@@ -59,6 +59,7 @@ impl SolidChemistry {
                     }
                 }
             }
+            self.wet_terms(around, state, (radius, &passage), surface);
             for layers in self.layers() {
                 let places = 0..shared.gases.len();
                 let seen: Vec<_> = places.map(|place| surface.found(place)).collect();
@@ -86,6 +87,44 @@ impl SolidChemistry {
             });
             if !surface.has_turned() {
                 break;
+            }
+        }
+    }
+
+    /// Terms of what dries a particle, and of what it sets free by itself.
+    fn wet_terms<N: Number>(
+        &self,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, N>,
+        (radius, passage): (N, &impl Fn(usize) -> (FilmPassage<N>, N)),
+        surface: &mut SurfaceBalance<N>,
+    ) {
+        let shared = self.shared();
+        for (place, &index) in shared.reactions.iter().enumerate() {
+            let reaction = &self.reactions[index];
+            match &reaction.rate {
+                Rate::Devolatilisation(law) => {
+                    surface.term(place, devolatilise((reaction, law), state), []);
+                }
+                Rate::Evaporation(law) => {
+                    let own = Self::vapour_and_water(reaction)
+                        .and_then(|(gas, _)| Some((gas, shared.place_of(gas)?)));
+                    let Some((gas, vapour)) = own else {
+                        continue;
+                    };
+                    let seen = surface.found(vapour);
+                    let beside = seen.unwrap_or_else(|| passage(gas).1.value());
+                    let exchange =
+                        self.wet_exchange((reaction, law), around, state, (radius, beside));
+                    if let Some(wet) = exchange {
+                        surface.term(place, wet.free, []);
+                        surface.term(place, -wet.back, [(vapour, 1.0)]);
+                        if wet.turns {
+                            surface.watch(vapour, wet.at_rest.value(), beside);
+                        }
+                    }
+                }
+                _ => {}
             }
         }
     }

@@ -124,9 +124,15 @@ impl Reacting {
         }
         let solids = self.chemistry.solids.len();
         scratch.see(self, p, around);
+        let mass = self.committed.first_mass[p];
+        scratch.first.clear();
+        scratch
+            .first
+            .extend(self.composition.iter().map(|n| n * mass));
         let species = scratch.fractions.len();
         let start = ParticleStart {
             amounts: &self.committed.amount[p * solids..(p + 1) * solids],
+            first: &scratch.first,
             temperature: begin,
             around: ParticleSurroundings {
                 temperature: hot,
@@ -269,6 +275,8 @@ fn guess(row: &[f64], first: bool) -> AttemptGuess {
 struct ParticleScratch {
     workspace: ParticleWorkspace,
     fractions: Vec<f64>,
+    /// Amounts in mol with which the particle came.
+    first: Vec<f64>,
 }
 
 impl ParticleScratch {
@@ -283,6 +291,7 @@ impl ParticleScratch {
             for fraction in &mut self.fractions {
                 *fraction = fraction.max(0.0);
             }
+            reacting.chemistry.other_than_vapour(&mut self.fractions);
         }
     }
 }

@@ -47,6 +47,10 @@ const CROSSING_LOGARITHM: f64 = LOW.a - LOW.b / (LOW.c + CROSSING);
 pub fn vapour_pressure<N: Number>(temperature: N) -> N {
     let t = temperature.value() - ICE_POINT;
     let set = if t < CROSSING { LOW } else { HIGH };
+    // The equation has a pole at 39.7 K, above which the pressure is none.
+    if set.c + t <= 0.0 {
+        return N::constant(0.0);
+    }
     let value = 10.0_f64.powf(set.a - set.b / (set.c + t)) * MILLIMETRE;
     let slope = value * std::f64::consts::LN_10 * set.b / ((set.c + t) * (set.c + t));
     temperature.through(value, slope)

@@ -39,6 +39,38 @@ pub fn sorption_heat_ratio<N: Number>(moisture: N, fibre_saturation: N) -> N {
     left * left * N::constant(0.4)
 }
 
+/// Energy that is lacking of a material with bound water against its dry solid and free water, over the heat of evaporation, by
+/// its masses of water and of dry solid in kg (docs/theory.md, DRY-2), in kg:
+///
+/// S = −m_dry ∫₀^M 0.4 (1 − M'/M_fsp)² dM'.
+pub fn binding(water: f64, dry: f64, fibre_saturation: f64) -> f64 {
+    if water <= 0.0 || dry <= 0.0 {
+        return 0.0;
+    }
+    let moisture = (water / dry).min(fibre_saturation);
+    // Σ without a difference of nearly equal numbers: 1 − (1 − x)³ = x (3 − 3 x + x²)
+    let x = moisture / fibre_saturation;
+    -dry * 0.4 * fibre_saturation / 3.0 * x * (3.0 - 3.0 * x + x * x)
+}
+
+/// Derivatives of [`binding`] with the masses of water and of dry solid.
+pub fn binding_slopes<N: Number>(water: N, dry: N, fibre_saturation: f64) -> [N; 2] {
+    if dry.value() <= 0.0 {
+        return [N::constant(0.0); 2];
+    }
+    let moisture = (water / dry).positive();
+    let ratio = sorption_heat_ratio(moisture, N::constant(fibre_saturation));
+    let x = if moisture.value() < fibre_saturation {
+        moisture.times(1.0 / fibre_saturation)
+    } else {
+        N::constant(1.0)
+    };
+    let sum = N::constant(3.0) - x.times(3.0) + x * x;
+    // S = −m_dry g(M): −g + M g'
+    let g = (x * sum).times(0.4 * fibre_saturation / 3.0);
+    [-ratio, moisture * ratio - g]
+}
+
 /// Mean of [`sorption_heat_ratio`] over the water that leaves between two moistures, from the higher to the lower one, both
 /// of one fibre saturation; the ratio itself where they are equal.
 pub fn mean_sorption_heat_ratio(from: f64, to: f64, fibre_saturation: f64) -> f64 {
@@ -108,6 +140,28 @@ mod tests {
         let with = without * (1.0 + mean_sorption_heat_ratio(1.0, 0.0, 0.3));
         assert!((without - 109.715).abs() < 1e-3, "{without}");
         assert!((with - 114.1).abs() < 0.05, "{with}");
+    }
+
+    #[test]
+    fn what_binds_water_is_the_sum_of_its_heats_of_sorption() {
+        let (dry, saturation) = (0.7, 0.3);
+        for moisture in [0.02, 0.15, 0.3, 0.9] {
+            let mean = mean_sorption_heat_ratio(moisture, 0.0, saturation);
+            let found = binding(moisture * dry, dry, saturation);
+            assert!(
+                (found + mean * moisture * dry).abs() < 1e-15,
+                "{moisture}: {found}"
+            );
+            let h = 1e-6;
+            let [by_water, by_dry] = binding_slopes(moisture * dry, dry, saturation);
+            let at = |w: f64, d: f64| binding(w, d, saturation);
+            let quotient = (at(moisture * dry + h, dry) - at(moisture * dry - h, dry)) / (2.0 * h);
+            assert!((by_water - quotient).abs() < 1e-6, "{moisture}: {by_water}");
+            let quotient = (at(moisture * dry, dry + h) - at(moisture * dry, dry - h)) / (2.0 * h);
+            assert!((by_dry - quotient).abs() < 1e-6, "{moisture}: {by_dry}");
+        }
+        assert_eq!(binding(0.0, 0.7, 0.3), 0.0);
+        assert_eq!(binding_slopes(1e-6, 0.0, 0.3), [0.0, 0.0]);
     }
 
     #[test]

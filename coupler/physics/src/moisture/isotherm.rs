@@ -1,5 +1,7 @@
 //! Water activity of wood by Hailwood and Horrobin's sorption isotherm.
 
+use calcine_numerics::{Dual, Number};
+
 /// Moisture of wood in equilibrium with air of a relative humidity H, 0 ≤ H ≤ 1, at a temperature in K:
 ///
 /// M = (18/W) [k/(1 − k) + (K₁k + 2K₁K₂k²)/(1 + K₁k + K₁K₂k²)],   k = K H,
@@ -23,20 +25,21 @@ pub fn water_activity(moisture: f64, temperature: f64) -> f64 {
     if moisture >= set.moisture(1.0) {
         return 1.0;
     }
+    let set = Constants::at(Dual::<1>::constant(temperature));
     if moisture <= 0.0 {
         return 0.0;
     }
     // M rises with H: Newton's method, within the interval that still holds the root.
     let (mut low, mut high, mut humidity) = (0.0, 1.0, 0.5);
     for _ in 0..100 {
-        let (value, slope) = set.with_slope(humidity);
-        let off = value - moisture;
+        let found = set.moisture(Dual::<1>::along(humidity, 0));
+        let off = found.value - moisture;
         if off > 0.0 {
             high = humidity;
         } else {
             low = humidity;
         }
-        let step = humidity - off / slope;
+        let step = humidity - off / found.slope[0];
         let next = if step > low && step < high {
             step
         } else {
@@ -50,40 +53,55 @@ pub fn water_activity(moisture: f64, temperature: f64) -> f64 {
     humidity
 }
 
-/// The four constants at a temperature.
-struct Constants {
-    w: f64,
-    k: f64,
-    k1: f64,
-    k2: f64,
+/// Temperature in K above which the isotherm stays as it is there: its constant K₁ comes to zero at 129 °C.
+const HIGHEST: f64 = 398.15;
+
+/// [`water_activity`] with derivatives. Above 125 °C the isotherm is that of 125 °C; of a moisture below zero it goes on with the
+/// slope at zero.
+pub fn activity<N: Number>(moisture: N, temperature: N) -> N {
+    let (m, hot) = (moisture.value(), temperature.value() >= HIGHEST);
+    let kelvin = temperature.value().min(HIGHEST);
+    let value = water_activity(m, kelvin);
+    if value >= 1.0 {
+        return N::constant(1.0);
+    }
+    // M(a, T) stays: da = (dM − M_T dT)/M_a.
+    let found = Constants::at(Dual::<2>::along(kelvin, 1)).moisture(Dual::along(value, 0));
+    let [by_activity, by_temperature] = found.slope;
+    let one_over = 1.0 / by_activity;
+    let by_temperature = if hot { 0.0 } else { by_temperature };
+    let start = if m < 0.0 { m * one_over } else { value };
+    N::constant(start)
+        + (moisture - N::constant(m)).times(one_over)
+        + (temperature - N::constant(temperature.value())).times(-by_temperature * one_over)
 }
 
-impl Constants {
-    fn at(temperature: f64) -> Self {
-        let t = temperature - 273.15;
+/// The four constants at a temperature.
+struct Constants<N> {
+    w: N,
+    k: N,
+    k1: N,
+    k2: N,
+}
+
+impl<N: Number> Constants<N> {
+    fn at(temperature: N) -> Self {
+        let t = temperature - N::constant(273.15);
+        let line = |a: f64, b: f64, c: f64| N::constant(a) + t * (N::constant(b) + t.times(c));
         Self {
-            w: 349.0 + t * (1.29 + 0.0135 * t),
-            k: 0.805 + t * (0.000_736 - 0.000_002_73 * t),
-            k1: 6.27 - t * (0.009_38 + 0.000_303 * t),
-            k2: 1.91 + t * (0.0407 - 0.000_293 * t),
+            w: line(349.0, 1.29, 0.0135),
+            k: line(0.805, 0.000_736, -0.000_002_73),
+            k1: line(6.27, -0.009_38, -0.000_303),
+            k2: line(1.91, 0.0407, -0.000_293),
         }
     }
 
-    fn moisture(&self, humidity: f64) -> f64 {
-        self.with_slope(humidity).0
-    }
-
-    /// M and dM/dH.
-    fn with_slope(&self, humidity: f64) -> (f64, f64) {
+    fn moisture(&self, humidity: N) -> N {
+        let one = N::constant(1.0);
         let k = self.k * humidity;
-        let (one, two) = (self.k1 * k, self.k1 * self.k2 * k * k);
-        let (above, below) = (one + 2.0 * two, 1.0 + one + two);
-        let value = k / (1.0 - k) + above / below;
-        let slope = 1.0 / ((1.0 - k) * (1.0 - k))
-            + ((self.k1 + 4.0 * self.k1 * self.k2 * k) * below
-                - above * (self.k1 + 2.0 * self.k1 * self.k2 * k))
-                / (below * below);
-        (18.0 / self.w * value, 18.0 / self.w * slope * self.k)
+        let (first, second) = (self.k1 * k, self.k1 * self.k2 * k * k);
+        let bound = k / (one - k) + (first + second.times(2.0)) / (one + first + second);
+        bound.times(18.0) / self.w
     }
 }
 

@@ -2,8 +2,10 @@
 
 pub mod arrhenius;
 pub mod conversion;
+pub mod devolatilisation;
 pub mod equation;
 pub mod equilibrium;
+pub mod evaporation;
 pub mod formula;
 pub mod layer_diffusivity;
 pub mod power_law;
@@ -12,8 +14,10 @@ pub mod shrinking_core;
 
 pub use arrhenius::Arrhenius;
 pub use conversion::{Conversion, GrainSurface};
+pub use devolatilisation::Devolatilisation;
 pub use equation::{Equation, EquationError, imbalance};
 pub use equilibrium::Equilibrium;
+pub use evaporation::Evaporation;
 pub use layer_diffusivity::LayerDiffusivity;
 pub use power_law::PowerLaw;
 pub use rate_law::RateLaw;
@@ -31,4 +35,7 @@ pub static RATE_LAWS: &[&LawEntry<RateLaw>] = &[
     &conversion::NUCLEATION,
     &conversion::RANDOM_PORE,
     &conversion::EQUILIBRIUM_PRESSURE,
+    &evaporation::LAW,
+    &evaporation::WOOD,
+    &devolatilisation::LAW,
 ];

@@ -2,6 +2,8 @@
 
 use super::arrhenius::Arrhenius;
 use super::conversion::{Conversion, GrainSurface};
+use super::devolatilisation::Devolatilisation;
+use super::evaporation::Evaporation;
 use super::layer_diffusivity::LayerDiffusivity;
 
 /// Where in a particle a reaction takes place, and what its rate goes by, as a case states it.
@@ -39,4 +41,8 @@ pub enum RateLaw {
         /// The grains.
         grains: GrainSurface,
     },
+    /// Water from a wet surface, see [`super::evaporation`].
+    Evaporation(Evaporation),
+    /// By the share of a solid that is left of the particle's start, see [`super::devolatilisation`].
+    Devolatilisation(Devolatilisation),
 }

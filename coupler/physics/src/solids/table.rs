@@ -11,7 +11,7 @@
 //! does not exist as a stable phase; its extrapolated figures give an equilibrium with iron far from
 //! the measured one.
 
-/// What is known of a solid; its name is its formula.
+/// What is known of a solid; its name is its formula, with (l) behind that of a liquid.
 pub struct SolidRecord {
     pub name: &'static str,
     /// J/mol at 298.15 K.
@@ -23,7 +23,24 @@ pub struct SolidRecord {
 }
 
 /// All built-in solids.
-pub static RECORDS: [SolidRecord; 9] = [
+pub static RECORDS: [SolidRecord; 10] = [
+    // Liquid: heat capacity of the saturated liquid by IAPWS-IF97.
+    SolidRecord {
+        name: "H2O(l)",
+        formation_enthalpy: -285_830.0,
+        entropy: 69.939,
+        heat_capacity: &[
+            (273.16, 76.01),
+            (298.15, 75.35),
+            (323.15, 75.33),
+            (348.15, 75.51),
+            (373.15, 75.95),
+            (423.15, 77.65),
+            (473.15, 81.00),
+            (523.15, 87.74),
+            (573.15, 103.6),
+        ],
+    },
     SolidRecord {
         name: "C",
         formation_enthalpy: 0.0,

@@ -76,6 +76,7 @@ fn left(
     let films = films(theory.temperature.of(particle, hot));
     let start = ParticleStart {
         amounts: &[amount, amount],
+        first: &[amount, amount],
         temperature: particle,
         around: ParticleSurroundings {
             temperature: hot,
@@ -230,6 +231,7 @@ fn carbon_dioxide_leaves_limestone_by_the_logarithm_of_what_stands_still() {
                 let fractions = [0.0, gas, 0.0, 1.0 - gas];
                 let start = ParticleStart {
                     amounts: &[1e-5, 1e-5],
+                    first: &[1e-5, 1e-5],
                     temperature: particle,
                     around: ParticleSurroundings {
                         temperature: hot,
@@ -274,6 +276,7 @@ fn calcination_flux(
     let films = films(theory.temperature.of(particle, hot));
     let start = ParticleStart {
         amounts: &[1e-5, 1e-8],
+        first: &[1e-5, 1e-8],
         temperature: particle,
         around: ParticleSurroundings {
             temperature: hot,

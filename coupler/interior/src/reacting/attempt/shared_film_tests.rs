@@ -138,6 +138,7 @@ fn follow(
     let films = FILMS.map(FilmCoefficient::constant);
     let start = ParticleStart {
         amounts: &[AMOUNT; 5],
+        first: &[AMOUNT; 5],
         temperature: PARTICLE,
         around: ParticleSurroundings {
             temperature: HOT,
@@ -573,6 +574,7 @@ fn a_fraction_that_is_not_a_number_gives_no_rates() {
         fractions[broken] = f64::NAN;
         let start = ParticleStart {
             amounts: &[AMOUNT; 5],
+            first: &[AMOUNT; 5],
             temperature: PARTICLE,
             around: ParticleSurroundings {
                 temperature: HOT,

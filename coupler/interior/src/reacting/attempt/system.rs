@@ -5,6 +5,8 @@ use calcine_numerics::{Dual, StiffSystem};
 
 use super::film_heat::FilmHeat;
 use crate::reacting::chemistry::SolidChemistry;
+#[cfg(doc)]
+use crate::reacting::drying::BoundWater;
 use crate::reacting::film_balance::{self, FilmBalance};
 use crate::reacting::passage::{FilmFlow, ParticleSurroundings};
 use crate::reacting::rates::RateState;
@@ -24,6 +26,8 @@ type Slopes = Dual<WIDTH>;
 pub struct ParticleStart<'a> {
     /// Amounts of all solids in mol.
     pub amounts: &'a [f64],
+    /// Those with which it came.
+    pub first: &'a [f64],
     /// Its temperature in K.
     pub temperature: f64,
     /// The gas about it.
@@ -56,13 +60,16 @@ impl Default for AttemptGuess {
 /// Memory of the equations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buffers {
-    amounts: Vec<f64>,
+    pub amounts: Vec<f64>,
     pub rates: Vec<f64>,
     amounts_dual: Vec<Slopes>,
     fractions_dual: Vec<Slopes>,
     rates_dual: Vec<Slopes>,
     /// Heat of each reaction in J/mol at the start, and its changes with the temperatures of the particle and the gas.
     pub warmth: Vec<[f64; 3]>,
+    /// Heat of each reaction in J/mol by what binds water at the amounts at hand, and its changes ([`BoundWater::heats`]); empty
+    /// where nothing does.
+    pub bound: Vec<[f64; 3]>,
     /// Molar heat capacity of each solid in J/mol/K, and its slope.
     molar: Vec<[f64; 2]>,
     /// The net flow through the film.
@@ -94,6 +101,7 @@ impl Buffers {
         self.molar.resize(start.amounts.len(), [0.0; 2]);
         self.shrinkage_slopes.clear();
         self.shrinkage_slopes.resize(chemistry.moving().len(), 0.0);
+        self.bound.clear();
         self.film.begin();
         self.surface.begin();
         self.surface_dual.begin();
@@ -187,6 +195,14 @@ impl ParticleSystem<'_> {
         for (&s, n) in self.chemistry.moving().iter().zip(y) {
             self.buffers.amounts[s] = *n;
         }
+        if let Some(bound) = self.chemistry.bound() {
+            let Buffers {
+                amounts,
+                bound: heats,
+                ..
+            } = &mut *self.buffers;
+            bound.heats(amounts, &self.chemistry.solids, heats);
+        }
         y[self.chemistry.moving().len()]
     }
 
@@ -205,7 +221,9 @@ impl ParticleSystem<'_> {
             for &(k, n) in self.chemistry.effects(j) {
                 out[k] += n * rate;
             }
-            released[0] += rate * (warmth[0] + warmth[1] * (temperature - self.start.temperature));
+            let bound = self.bound_heat(j);
+            released[0] +=
+                rate * (warmth[0] + warmth[1] * (temperature - self.start.temperature) + bound);
             released[1] += rate * warmth[1];
             out[moving + 1 + j] = *rate;
         }
@@ -221,6 +239,23 @@ impl ParticleSystem<'_> {
             conductance,
             widened: wider * difference + 2.0 * shrinkage * self.start.heat,
         }
+    }
+
+    /// Heat in J/mol of a reaction by what binds water at the amounts at hand.
+    fn bound_heat(&self, reaction: usize) -> f64 {
+        let heats = self.buffers.bound.get(reaction);
+        heats.map_or(0.0, |one| one[0])
+    }
+
+    /// Change with the amount of a solid of the heat in W that reactions set free by what binds water, at fixed rates.
+    fn bound_slope(&self, solid: usize) -> f64 {
+        let Some(bound) = self.chemistry.bound() else {
+            return 0.0;
+        };
+        let part = bound.part(solid);
+        let pairs = self.buffers.rates.iter().zip(&self.buffers.bound);
+        let sum: f64 = pairs.map(|(rate, heat)| rate * heat[part]).sum();
+        sum * self.chemistry.solids[solid].molar_mass()
     }
 
     /// What the film of a particle so much smaller than at the start conducts in W/K at the rates at hand, and its slope.
@@ -242,6 +277,7 @@ impl ParticleSystem<'_> {
             fractions: around.fractions,
             temperature,
             film_flow: FilmFlow::still(),
+            first: self.start.first,
             trace: self.trace,
             fastest: self.fastest,
             known: None,
@@ -306,6 +342,7 @@ impl StiffSystem for ParticleSystem<'_> {
                 let film = &self.buffers.film_heat;
                 let heat = warmth[0]
                     + warmth[1] * (temperature - self.start.temperature)
+                    + self.bound_heat(j)
                     + difference * film.slope(own, shrinkage, &self.buffers.rates, j);
                 for (direction, slope) in (first..last).zip(rate.slope) {
                     if direction < n {
@@ -332,7 +369,8 @@ impl StiffSystem for ParticleSystem<'_> {
         let widening = &self.buffers.shrinkage_slopes;
         let row = &mut derivatives.jacobian[place_of_temperature * n..];
         for (k, &s) in chemistry.moving().iter().enumerate() {
-            row[k] += widening[k] * heat.widened - rise * self.buffers.molar[s][0];
+            row[k] +=
+                widening[k] * heat.widened - rise * self.buffers.molar[s][0] + self.bound_slope(s);
         }
         row[place_of_temperature] += heat.released - heat.conductance - rise * heat.capacity[1];
         row.iter_mut().for_each(|slope| *slope /= heat.capacity[0]);
@@ -471,6 +509,7 @@ impl ParticleSystem<'_> {
             fractions: &buffers.fractions_dual,
             temperature: warm,
             film_flow: buffers.film.point(),
+            first: self.start.first,
             trace: self.trace,
             fastest: self.fastest,
             known: None,

@@ -114,6 +114,7 @@ impl Case {
         let film = vec![FilmCoefficient::constant(self.film); self.fractions.len()];
         let start = ParticleStart {
             amounts: &self.amounts,
+            first: &self.amounts,
             temperature: self.temperature,
             around: ParticleSurroundings {
                 temperature: self.gas_temperature,
@@ -442,6 +443,7 @@ fn a_sphere_limited_by_its_film_follows_the_d_squared_law_at_any_temperature_and
             // The heat of the reaction alone would take it to several thousand kelvin; without a loss it does not.
             let start = ParticleStart {
                 amounts: &[amount],
+                first: &[amount],
                 temperature: 1200.0,
                 around: ParticleSurroundings {
                     temperature: hot,
