@@ -18,6 +18,7 @@ mod continuation;
 mod damaged_checkpoints;
 mod docs;
 mod drag_ripple;
+mod drying;
 mod external_gas;
 mod external_mistakes;
 mod external_particles;

@@ -151,6 +151,28 @@ fn so_are_two_that_react() {
 }
 
 #[test]
+fn and_two_that_dry() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = [
+        "particles[0].diameter=3 mm",
+        "time.end=2 min",
+        "output.every=2 min",
+        "output.series_every=20 s",
+    ];
+    let chips = |path: &Path, times| grid(path, [6, 6, 12], 0.004, 0.008, times);
+    let [two, one] = pair(folder.path(), "wood-drying", chips, &set);
+    for field in ["temperature", "void_fraction", "H2O"] {
+        let off = off(&two, &one, field);
+        println!("{field}: {off:.1e}");
+        assert!(off < 1e-10, "{field}: {off}");
+    }
+    let masses = [&one, &two].map(|out| last(out, "particles.pvd")["mass"].values.clone());
+    for (a, b) in masses[0].iter().zip(masses[1].iter().step_by(2)) {
+        assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+    }
+}
+
+#[test]
 fn a_bed_with_weights_resumes_to_the_same_bits() {
     let program = c_solver::particles().display();
     let external = [

@@ -4,7 +4,7 @@ use calcine_coupler::coordinator::RunError;
 use calcine_coupler::interior::radial::{
     PoreGas, PorousSolid, RadialError, RadialNumerics, ShellResolution,
 };
-use calcine_coupler::interior::reacting::{Rate, SizeChange, SolidChemistry};
+use calcine_coupler::interior::reacting::{SizeChange, SolidChemistry};
 use calcine_coupler::interior::{
     HeatNetwork, ParticleModel, PrescribedTemperature, Radial, Reacting, Thin,
 };
@@ -158,8 +158,7 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
 /// The reactions of particles with shells: those by laws that leave layers to the shells.
 fn of_shells(case: &Case) -> Result<SolidChemistry, AssemblyError> {
     let mut own = case.chemistry.clone();
-    own.reactions
-        .retain(|one| !matches!(one.rate, Rate::Core { .. }));
+    own.reactions.retain(|one| !one.rate.needs_thin());
     with_gas(case, own, case.chemistry.exchanges())
 }
 

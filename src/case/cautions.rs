@@ -39,6 +39,8 @@ fn with_energy(case: &Case, of_gas: bool, is: impl Fn(f64) -> bool) -> Vec<&str>
     let so = |constant: &Arrhenius| is(constant.activation_energy);
     let solid = |rate: &Rate| match rate {
         Rate::Power(law) => so(&law.rate_constant) || law.in_series.as_ref().is_some_and(so),
+        Rate::Evaporation(_) => false,
+        Rate::Devolatilisation(law) => so(&law.rate),
         Rate::Core { rate_constant, .. }
         | Rate::Conversion { rate_constant, .. }
         | Rate::Grains { rate_constant, .. } => so(rate_constant),

@@ -108,7 +108,7 @@ fn thiele(
             let lacking = 1e5 / reaction.equilibrium.inverse(kelvin).max(f64::MIN_POSITIVE);
             rate_constant.at(kelvin) * grains.at_start(volume) * lacking
         }
-        Rate::Core { .. } => return None,
+        Rate::Core { .. } | Rate::Evaporation(_) | Rate::Devolatilisation(_) => return None,
     };
     let filled: f64 = start.iter().zip(true_density).map(|(y, rho)| y / rho).sum();
     let porosity = 1.0 - material.density * filled;

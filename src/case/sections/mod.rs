@@ -6,6 +6,7 @@ mod common;
 mod composition;
 mod conversion;
 mod coupling;
+mod drying;
 mod feeds;
 mod film_diffusivity;
 mod gas;
@@ -103,7 +104,7 @@ pub(super) fn case(
         particles::weights_fit(root, particles, laws);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
-    solids::no_drying(root, &solids, &materials, &reactions);
+    drying::no_drying(root, &solids, &materials, &reactions);
     let populations = particles.as_deref().unwrap_or_default();
     let chemistry = inventory::inventory(solids, reactions, &materials, populations);
     if let Some(particles) = &particles {
@@ -112,6 +113,7 @@ pub(super) fn case(
         let reactions = chemistry.reactions.len();
         particles::prescribed_fit(root, particles, &materials, reactions);
     }
+    drying::fits(root, &chemistry, laws.as_ref());
     if let Some(laws) = &laws {
         reactions::fits(root, &chemistry, laws, openfoam.solver);
     }

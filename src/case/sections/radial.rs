@@ -1,7 +1,7 @@
 //! `materials.NAME.inside` and `.radial`: particles resolved along their radius.
 
 use calcine_coupler::interior::radial::ShellGrid;
-use calcine_coupler::interior::reacting::Rate;
+use calcine_coupler::interior::reacting::{Rate, Reaction};
 use calcine_coupler::physics::pores::PorousConductivity;
 use calcine_coupler::physics::solids::SolidSpecies;
 
@@ -92,22 +92,24 @@ fn fits_one(
 ) {
     let start = chemistry.compositions.get(index).map_or(&[][..], |own| own);
     let holds = |s: usize| start.get(s).is_some_and(|y| *y > 0.0);
+    // A core has its layers instead of shells, and may stand beside another law; nothing else takes up water and volatiles.
+    let only = |one: &Reaction| one.rate.needs_thin() && !matches!(one.rate, Rate::Core { .. });
     let reacts = |shells: bool| {
-        let mut own = chemistry.reactions.iter();
-        own.find(|one| {
-            let core = matches!(one.rate, Rate::Core { .. });
+        let stays = |one: &&Reaction| {
             let stays = if shells {
-                core
+                one.rate.needs_thin()
             } else {
                 one.rate.needs_shells()
             };
             stays && one.solids.iter().any(|&(s, n)| n < 0.0 && holds(s))
-        })
+        };
+        let own = || chemistry.reactions.iter().filter(stays);
+        own().find(|one| only(one)).or_else(|| own().next())
     };
     let others = |shells: bool| {
         chemistry.reactions.iter().any(|one| {
             let own = if shells {
-                !matches!(one.rate, Rate::Core { .. })
+                !one.rate.needs_thin()
             } else {
                 !one.rate.needs_shells()
             };
@@ -115,8 +117,13 @@ fn fits_one(
         })
     };
     let with_shells = material.inside != Inside::Thin;
-    if let Some(one) = reacts(with_shells).filter(|_| !others(with_shells)) {
+    if let Some(one) = reacts(with_shells).filter(|one| only(one) || !others(with_shells)) {
         let rule = match with_shells {
+            true if only(one) => format!(
+                "gives particles shells, but {} goes by {}, which is a law of thin particles",
+                one.name,
+                one.rate.law().name
+            ),
             true => format!(
                 "gives particles shells, but {} goes by shrinking-core, which has its own layers",
                 one.name
@@ -128,6 +135,7 @@ fn fits_one(
             ),
         };
         let help = match with_shells {
+            true if only(one) => "write inside = \"thin\", or leave it out",
             true => {
                 "add the reaction by a law of the whole particle, such as equilibrium-pressure or power-law"
             }

@@ -32,6 +32,10 @@ pub(super) fn possible(reaction: &TableReader<'_>, rate: &Rate) {
         Rate::Conversion { rate_constant, .. } | Rate::Grains { rate_constant, .. } => {
             within(&table, rate_constant, FASTEST_VOLUME, WORDS);
         }
+        Rate::Devolatilisation(law) => {
+            within(&table, &law.rate, FASTEST_VOLUME, WORDS);
+        }
+        Rate::Evaporation(_) => {}
         Rate::Power(law) => {
             within(&table, &law.rate_constant, FASTEST_VOLUME, WORDS);
             if let (Some(constant), Some(table)) = (&law.in_series, table.table("in_series")) {

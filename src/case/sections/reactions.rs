@@ -10,7 +10,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
-use super::rate_constants;
+use super::{drying, rate_constants};
 use crate::case::model::{Laws, ReactionSpec};
 use crate::case::table::TableReader;
 
@@ -112,6 +112,10 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
             table.fail("equation", "sets gas free and goes one way", help);
             return None;
         }
+    }
+    let names = known.gas.map_or(&[][..], |gas| gas.names());
+    if !drying::suits(table, &made, known.solids, names) {
+        return None;
     }
     heat.is_none_or(|heat| agrees(table, heat, &made, known))
         .then_some(made)
@@ -215,6 +219,8 @@ fn rate(
             rate_constant,
             diffusivity,
         }),
+        RateLaw::Evaporation(law) => Some(Rate::Evaporation(law)),
+        RateLaw::Devolatilisation(law) => Some(Rate::Devolatilisation(law)),
         RateLaw::EquilibriumPressure {
             rate_constant,
             grains,

@@ -18,6 +18,6 @@ pub(in crate::case) fn is_moisture(word: &str) -> bool {
 
 /// What is said of moisture in a material.
 pub(in crate::case) const NO_DRYING: [&str; 2] = [
-    "is refused: particles do not dry, so that their water would stay in them",
-    "describe the dry material, and let the gas bring the vapour as H2O in the inlet's composition",
+    "is refused: water of a material is a part of its composition",
+    "write composition = { mass = { ..., \"H2O(l)\" = 0.3 } } with the reaction \"H2O(l) <=> H2O\" of law = \"evaporation\", and H2O in gas.species",
 ];

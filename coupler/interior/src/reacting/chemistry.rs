@@ -37,7 +37,8 @@ pub struct SolidChemistry {
     /// True where reactions change the moles, and the mass, of the gas.
     makes_moles: bool,
     makes_mass: bool,
-    /// What binds water.
+    /// The reaction that dries, and what binds water.
+    drying: Option<usize>,
     bound: Option<BoundWater>,
 }
 
@@ -71,8 +72,11 @@ impl SolidChemistry {
             direction: Vec::new(),
             makes_moles: false,
             makes_mass: false,
+            drying: None,
             bound: None,
         };
+        let dries = |one: &Reaction| matches!(one.rate, Rate::Evaporation(_));
+        made.drying = made.reactions.iter().position(dries);
         made.bound = BoundWater::of(&made.reactions, &made.solids, made.gas.as_ref());
         made.heat = made.reactions.iter().map(|one| made.heat_of(one)).collect();
         made.index();
@@ -219,6 +223,26 @@ impl SolidChemistry {
             }
         }
         -self.heat[reaction] - sensible
+    }
+
+    /// Change with the particle's temperature of the heat that a mole of a reaction brings it, in J/mol/K, of one that uses no gas.
+    pub(super) fn warmth_slope(&self, reaction: usize, temperature: f64) -> f64 {
+        let one = &self.reactions[reaction];
+        let solids = one.solids.iter().map(|&(s, n)| {
+            n * self.solids[s].molar_mass() * self.solids[s].heat_capacity(temperature)
+        });
+        let gases = one.gases.iter().map(|&(g, n)| {
+            let species = self.gas.as_ref().map(|gas| &gas.species()[g]);
+            species.map_or(0.0, |one| {
+                n * one.molar_mass() * one.heat_capacity(temperature)
+            })
+        });
+        -solids.chain(gases).sum::<f64>()
+    }
+
+    /// The reaction that dries particles.
+    pub(super) fn drying(&self) -> Option<usize> {
+        self.drying
     }
 
     /// What binds water, if anything does.

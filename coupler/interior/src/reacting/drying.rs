@@ -40,13 +40,8 @@ impl SolidChemistry {
 
     /// Leaves the last gas its least share beside vapour, in mole fractions.
     pub(super) fn other_than_vapour(&self, fractions: &mut [f64]) {
-        let dries = |one: &&Reaction| matches!(one.rate, Rate::Evaporation(_));
-        let Some((vapour, _)) = self
-            .reactions
-            .iter()
-            .find(dries)
-            .and_then(Self::vapour_and_water)
-        else {
+        let reaction = self.drying().map(|one| &self.reactions[one]);
+        let Some((vapour, _)) = reaction.and_then(Self::vapour_and_water) else {
             return;
         };
         let most = 1.0 - LEAST_OTHER;

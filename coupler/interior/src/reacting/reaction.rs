@@ -76,6 +76,14 @@ impl Rate {
         }
     }
 
+    /// True where only thin particles know the law: it has layers, a wet surface or the start of a particle.
+    pub fn needs_thin(&self) -> bool {
+        matches!(
+            self,
+            Self::Core { .. } | Self::Evaporation(_) | Self::Devolatilisation(_)
+        )
+    }
+
     /// True where only particles with shells know the law: it needs the pores.
     pub fn needs_shells(&self) -> bool {
         matches!(self, Self::Conversion { .. } | Self::Grains { .. })

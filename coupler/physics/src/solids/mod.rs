@@ -22,6 +22,8 @@ pub struct SolidSpecies {
     heat_capacity: HeatCapacity,
     /// Enthalpy and entropy of the heat capacity's law at 298.15 K.
     reference: [f64; 2],
+    /// True of a liquid, which is gone before it is hotter than its heat capacity is given for.
+    liquid: bool,
 }
 
 /// A solid that cannot be.
@@ -87,6 +89,7 @@ impl SolidSpecies {
             entropy,
             heat_capacity,
             reference,
+            liquid: false,
         }
     }
 
@@ -97,13 +100,15 @@ impl SolidSpecies {
         let molar_mass: f64 = weighed.map(|(element, n)| n * element.molar_mass()).sum();
         let points = record.heat_capacity.iter();
         let law = HeatCapacity::table(points.map(|&(t, c)| (t, c / molar_mass)).collect());
-        Ok(Self::assemble(
+        let mut made = Self::assemble(
             record.name,
             atoms,
             record.formation_enthalpy,
             record.entropy,
             law,
-        ))
+        );
+        made.liquid = chemical != record.name;
+        Ok(made)
     }
 
     /// Names of the built-in solids.
@@ -147,7 +152,8 @@ impl SolidSpecies {
 
     /// Lowest and highest temperature in K for which its heat capacity is given.
     pub fn range(&self) -> (f64, f64) {
-        self.heat_capacity.range()
+        let (low, high) = self.heat_capacity.range();
+        (low, if self.liquid { f64::INFINITY } else { high })
     }
 
     /// Specific heat capacity in J/kg/K.

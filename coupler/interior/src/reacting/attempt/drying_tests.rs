@@ -381,3 +381,39 @@ fn volatiles_leave_by_their_closed_form() {
     let converted = 0.3 + workspace.extents[0] / 1e-6;
     assert!((converted - 0.710_984).abs() < 1e-5, "{converted}");
 }
+
+#[test]
+fn superheated_water_flashes_to_its_boiling_point() {
+    let chemistry = drying(FREE, both_ways());
+    for kelvin in [380.0, 450.0, 500.0, 640.0] {
+        let mut wet = drop(&chemistry, 400.0, 0.0);
+        wet.masses = [4e-7, 2e-7];
+        wet.temperature = kelvin;
+        for span in [1e-6, 1e-3, 1.0] {
+            let (used, outcome) = wet.after(span);
+            assert!(
+                used[0] >= 0.0 && used[0] <= 2e-7,
+                "{kelvin} {span}: {used:?}"
+            );
+            if span == 1e-3 {
+                // What cools the particle is what evaporates: C dT = −L dm, next to nothing comes through the film.
+                assert!(
+                    outcome.end < boiling_temperature(PRESSURE),
+                    "{kelvin}: {outcome:?}"
+                );
+                let (mut water, parts) = (2e-7, 2000);
+                let step = (kelvin - outcome.end) / f64::from(parts);
+                for part in 0..parts {
+                    let at = kelvin - (f64::from(part) + 0.5) * step;
+                    let heats = [0, 1].map(|k: usize| chemistry.solids[k].heat_capacity(at));
+                    let capacity = 4e-7 * heats[0] + water * heats[1];
+                    water -= capacity * step / wet.evaporation_heat(at);
+                }
+                assert!(
+                    (used[1] / water - 1.0).abs() < 5e-3,
+                    "{kelvin}: {used:?} {water}"
+                );
+            }
+        }
+    }
+}

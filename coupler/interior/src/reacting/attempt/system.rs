@@ -195,6 +195,16 @@ impl ParticleSystem<'_> {
         for (&s, n) in self.chemistry.moving().iter().zip(y) {
             self.buffers.amounts[s] = *n;
         }
+        let temperature = y[self.chemistry.moving().len()];
+        // Water that boils may cool a particle by a hundred kelvin within a window: its heat is no line.
+        if let Some(j) = self.chemistry.drying() {
+            let hot = self.start.around.temperature;
+            let slope = self.chemistry.warmth_slope(j, temperature);
+            let at = self.chemistry.warmth(j, temperature, hot);
+            let warmth = &mut self.buffers.warmth[j];
+            warmth[0] = at - slope * (temperature - self.start.temperature);
+            warmth[1] = slope;
+        }
         if let Some(bound) = self.chemistry.bound() {
             let Buffers {
                 amounts,
@@ -203,7 +213,7 @@ impl ParticleSystem<'_> {
             } = &mut *self.buffers;
             bound.heats(amounts, &self.chemistry.solids, heats);
         }
-        y[self.chemistry.moving().len()]
+        temperature
     }
 
     /// What follows from the rates with a heat capacity in J/K and its slope: changes of amounts, of temperature, of extents.
