@@ -86,11 +86,7 @@ fn every_pairing_dries_a_bed_alike() {
     let settings = ["time.end=3 min", "output.every=3 min"];
     let case = program::shipped("wood-drying");
     let compared = program::compare(&case, folder.path(), "all", &settings);
-    assert_eq!(
-        compared["runs"].as_array().unwrap().len(),
-        4,
-        "{compared}"
-    );
+    assert_eq!(compared["runs"].as_array().unwrap().len(), 4, "{compared}");
 }
 
 #[test]
