@@ -5,7 +5,7 @@ use calcine_physics::reaction::PowerLaw;
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
-use super::drying::BoundWater;
+use super::bound_water::BoundWater;
 use super::layers::{Layers, LayersError, gases, layers};
 use super::passage::ParticleSurroundings;
 use super::reaction::{Rate, Reaction};

@@ -1,16 +1,13 @@
-//! Water of particles: its exchange with the gas through the film (docs/theory.md, DRY-1), and what binds it (DRY-2).
+//! Water of particles: its exchange with the gas through the film (docs/theory.md, DRY-1).
 
-use calcine_numerics::{Dual, Number};
-use calcine_physics::moisture::bound_water::{binding, binding_slopes};
+use calcine_numerics::Number;
 use calcine_physics::reaction::Evaporation;
-use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
-use calcine_physics::thermo::Mixture;
 
 use super::chemistry::SolidChemistry;
 use super::passage::ParticleSurroundings;
 use super::rates::RateState;
-use super::reaction::{Rate, Reaction};
+use super::reaction::Reaction;
 
 /// How many times faster than interfaces are at most ([`RateState::fastest`]) a wet surface comes to equilibrium with the gas
 /// beside it: that much the vapour there is off.
@@ -18,8 +15,6 @@ const QUICK: f64 = 100.0;
 /// Mole fraction of other gases that vapour beside a particle has at least: pure vapour has no film, and what would condense in it on
 /// a cold particle no end. With it, condensation is some ten times as fast as in a gas with a tenth of another one.
 pub(super) const LEAST_OTHER: f64 = 1e-7;
-/// Temperature in K whose heat of evaporation the heat of sorption is a share of.
-const BOILING: f64 = 373.15;
 
 /// A wet surface: what it sets free by itself in mol/s, and what it takes back at 1 mol/m³ beside it.
 pub(super) struct WetExchange<N> {
@@ -32,16 +27,10 @@ pub(super) struct WetExchange<N> {
 }
 
 impl SolidChemistry {
-    /// The gas and the solid between which a reaction dries a particle.
-    pub(super) fn vapour_and_water(reaction: &Reaction) -> Option<(usize, usize)> {
-        let (gas, solid) = (reaction.gases.first()?, reaction.solids.first()?);
-        Some((gas.0, solid.0))
-    }
-
     /// Leaves the last gas its least share beside vapour, in mole fractions.
     pub(super) fn other_than_vapour(&self, fractions: &mut [f64]) {
         let reaction = self.drying().map(|one| &self.reactions[one]);
-        let Some((vapour, _)) = reaction.and_then(Self::vapour_and_water) else {
+        let Some((vapour, _)) = reaction.and_then(Reaction::vapour_and_water) else {
             return;
         };
         let most = 1.0 - LEAST_OTHER;
@@ -62,7 +51,7 @@ impl SolidChemistry {
         state: &RateState<'_, N>,
         (radius, beside): (N, f64),
     ) -> Option<WetExchange<N>> {
-        let (gas, water) = Self::vapour_and_water(reaction)?;
+        let (gas, water) = reaction.vapour_and_water()?;
         let film = around.film_temperature(state.temperature);
         let coefficient = around.coefficient(gas, radius, film);
         let quick = coefficient.times(QUICK * state.fastest);
@@ -91,7 +80,7 @@ impl SolidChemistry {
         (radius, all_gas): (N, N),
     ) -> N {
         let none = N::constant(0.0);
-        let Some((gas, _)) = Self::vapour_and_water(drying.0) else {
+        let Some((gas, _)) = drying.0.vapour_and_water() else {
             return none;
         };
         let passage = around.passage(gas, radius, state.temperature, state.film_flow);
@@ -115,81 +104,5 @@ impl SolidChemistry {
             *part = *part + n.times(solid.molar_mass());
         }
         masses
-    }
-}
-
-/// What binds the water of particles.
-#[derive(Clone, Debug)]
-pub(super) struct BoundWater {
-    water: usize,
-    fibre_saturation: f64,
-    /// Heat of evaporation in J/kg of which the heat of sorption is a share.
-    latent: f64,
-    /// Masses in kg of water and of everything else that a mole of each reaction makes.
-    effects: Vec<[f64; 2]>,
-}
-
-impl BoundWater {
-    /// That of the first reaction that dries with a heat of sorption.
-    pub fn of(
-        reactions: &[Reaction],
-        solids: &[SolidSpecies],
-        gas: Option<&Mixture>,
-    ) -> Option<Self> {
-        let (reaction, fibre_saturation) = reactions.iter().find_map(|one| match &one.rate {
-            Rate::Evaporation(law) => Some((one, law.fibre_saturation?)),
-            _ => None,
-        })?;
-        let (vapour, water) = SolidChemistry::vapour_and_water(reaction)?;
-        let (vapour, liquid) = (&gas?.species()[vapour], &solids[water]);
-        let latent = vapour.formation_enthalpy() + vapour.enthalpy(BOILING)
-            - liquid.formation_enthalpy() / liquid.molar_mass()
-            - liquid.enthalpy(BOILING);
-        let effects = reactions.iter().map(|one| {
-            let mut masses = [0.0; 2];
-            for &(s, n) in &one.solids {
-                masses[usize::from(s != water)] += n * solids[s].molar_mass();
-            }
-            masses
-        });
-        Some(Self {
-            water,
-            fibre_saturation,
-            latent,
-            effects: effects.collect(),
-        })
-    }
-
-    fn masses(&self, amounts: &[f64], solids: &[SolidSpecies]) -> [f64; 2] {
-        let mut masses = [0.0; 2];
-        for (s, (n, solid)) in amounts.iter().zip(solids).enumerate() {
-            masses[usize::from(s != self.water)] += n * solid.molar_mass();
-        }
-        masses
-    }
-
-    /// Energy in J of amounts in mol against those of free water and dry solid, zero or below.
-    pub fn energy(&self, amounts: &[f64], solids: &[SolidSpecies]) -> f64 {
-        let [water, dry] = self.masses(amounts, solids);
-        self.latent * binding(water, dry, self.fibre_saturation)
-    }
-
-    /// Heat in J/mol that each reaction sets free by it at these amounts, and its changes with the masses in kg of water and of
-    /// everything else.
-    pub fn heats(&self, amounts: &[f64], solids: &[SolidSpecies], out: &mut Vec<[f64; 3]>) {
-        let [water, dry] = self.masses(amounts, solids);
-        let (water, dry) = (Dual::<2>::along(water, 0), Dual::along(dry, 1));
-        let slopes = binding_slopes(water, dry, self.fibre_saturation);
-        out.clear();
-        out.extend(self.effects.iter().map(|effect| {
-            let heat =
-                (slopes[0].times(effect[0]) + slopes[1].times(effect[1])).times(-self.latent);
-            [heat.value, heat.slope[0], heat.slope[1]]
-        }));
-    }
-
-    /// Which of the changes of [`Self::heats`] is that with a solid.
-    pub fn part(&self, solid: usize) -> usize {
-        1 + usize::from(solid != self.water)
     }
 }

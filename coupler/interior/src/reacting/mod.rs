@@ -12,6 +12,7 @@
 
 pub mod attempt;
 mod book;
+mod bound_water;
 pub mod chemistry;
 mod columns;
 mod drying;

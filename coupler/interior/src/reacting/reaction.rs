@@ -4,7 +4,7 @@ use calcine_physics::law::LawEntry;
 pub use calcine_physics::reaction::LayerDiffusivity;
 use calcine_physics::reaction::{
     Arrhenius, Conversion, Devolatilisation, Equilibrium, Evaporation, GrainSurface, PowerLaw,
-    RateLaw, conversion, devolatilisation, evaporation, power_law, shrinking_core,
+    RateLaw, conversion, power_law, shrinking_core, wet_entries,
 };
 
 /// A reaction of solids, and of gases where it is heterogeneous.
@@ -20,6 +20,14 @@ pub struct Reaction {
     pub rate: Rate,
     /// How far it goes.
     pub equilibrium: Equilibrium,
+}
+
+impl Reaction {
+    /// The gas and the solid between which a reaction dries a particle.
+    pub(super) fn vapour_and_water(&self) -> Option<(usize, usize)> {
+        let (gas, solid) = (self.gases.first()?, self.solids.first()?);
+        Some((gas.0, solid.0))
+    }
 }
 
 /// Laws of rates.
@@ -63,9 +71,9 @@ impl Rate {
             Self::Power(_) => &power_law::LAW,
             Self::Core { .. } => &shrinking_core::LAW,
             Self::Grains { .. } => &conversion::EQUILIBRIUM_PRESSURE,
-            Self::Evaporation(law) if law.isotherm => &evaporation::WOOD,
-            Self::Evaporation(_) => &evaporation::LAW,
-            Self::Devolatilisation(_) => &devolatilisation::LAW,
+            Self::Evaporation(law) if law.isotherm => &wet_entries::WOOD_DRYING,
+            Self::Evaporation(_) => &wet_entries::EVAPORATION,
+            Self::Devolatilisation(_) => &wet_entries::DEVOLATILISATION,
             Self::Conversion { conversion, .. } => match conversion {
                 Conversion::FirstOrder(_) => &conversion::FIRST_ORDER,
                 Conversion::ContractingArea(_) => &conversion::CONTRACTING_AREA,

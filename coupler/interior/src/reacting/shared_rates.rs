@@ -107,7 +107,8 @@ impl SolidChemistry {
                     surface.term(place, devolatilise((reaction, law), state), []);
                 }
                 Rate::Evaporation(law) => {
-                    let own = Self::vapour_and_water(reaction)
+                    let own = reaction
+                        .vapour_and_water()
                         .and_then(|(gas, _)| Some((gas, shared.place_of(gas)?)));
                     let Some((gas, vapour)) = own else {
                         continue;

@@ -2,56 +2,7 @@
 
 use calcine_numerics::Number;
 
-use super::arrhenius::{ACTIVATION_ENERGY, Arrhenius, EXPONENT};
-use super::rate_law::RateLaw;
-use crate::dimension::Dimension;
-use crate::law::{Bound, LawEntry, LawParameter, LawTable};
-
-/// Its entry in a case file.
-pub static LAW: LawEntry<RateLaw> = LawEntry {
-    name: "devolatilisation",
-    summary: "In the whole particle, by the share of its solid that is left of the particle's start, to a power.",
-    source: "docs/theory.md, DEV-2",
-    parameters: &[LawParameter {
-        name: "order",
-        dimension: Dimension::NONE,
-        bound: Bound::Between(1.0, 10.0),
-        default: None,
-        needed_with: None,
-        meaning: "Order n of the rate in the share that is left; below 1 the last of it would leave in finite time.",
-        example: "1.22",
-    }],
-    tables: &[RATE],
-    make: |values| {
-        let rate = values.table(0).cloned().unwrap_or_default();
-        Box::new(RateLaw::Devolatilisation(Devolatilisation {
-            rate: Arrhenius::from_values(&rate),
-            order: values[0],
-        }))
-    },
-};
-
-const RATE: LawTable = LawTable {
-    name: "rate",
-    required: true,
-    meaning: "Rate constant k = factor T^exponent exp(-activation_energy/RT).",
-    example: "{ factor = 2.58e11, activation_energy = \"159.2 kJ/mol\" }",
-    by_name: None,
-    parameters: &[
-        LawParameter {
-            name: "factor",
-            dimension: Dimension::NONE,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "A number in 1/s.",
-            example: "2.58e11",
-        },
-        EXPONENT,
-        ACTIVATION_ENERGY,
-    ],
-    tables: &[],
-};
+use super::arrhenius::Arrhenius;
 
 /// Volatiles of a particle that leave by a rate of order n (docs/theory.md, DEV-2):
 ///

@@ -2,58 +2,9 @@
 
 use calcine_numerics::Number;
 
-use super::rate_law::RateLaw;
-use crate::dimension::Dimension;
 use crate::gas::GAS_CONSTANT;
-use crate::law::{Bound, LawEntry, LawParameter, LawTable, LawValues};
 use crate::moisture::antoine::vapour_pressure;
 use crate::moisture::isotherm;
-
-/// Entry of free water in a case file.
-pub static LAW: LawEntry<RateLaw> = LawEntry {
-    name: "evaporation",
-    summary: "From the surface of a wet particle, by the vapour pressure of water; condensation with <=>, none with =>.",
-    source: "docs/theory.md, DRY-1",
-    parameters: &[],
-    tables: &[BOUND_WATER],
-    make: |values| Box::new(RateLaw::Evaporation(made(values, false))),
-};
-
-/// Entry of the water of wood in a case file.
-pub static WOOD: LawEntry<RateLaw> = LawEntry {
-    name: "wood-drying",
-    summary: "Like evaporation, with the lower vapour pressure over bound water by the isotherm of Hailwood and Horrobin.",
-    source: "docs/theory.md, DRY-4",
-    parameters: &[],
-    tables: &[BOUND_WATER],
-    make: |values| Box::new(RateLaw::Evaporation(made(values, true))),
-};
-
-const BOUND_WATER: LawTable = LawTable {
-    name: "bound_water",
-    required: false,
-    meaning: "Heat of sorption of the water below fibre saturation, 0.4 (1 - M/M_fsp)^2 of the heat of evaporation; none where it is left out.",
-    example: "{ fibre_saturation = 0.3 }",
-    by_name: None,
-    parameters: &[LawParameter {
-        name: "fibre_saturation",
-        dimension: Dimension::NONE,
-        bound: Bound::UpTo(0.0, 1.0),
-        default: Some(0.3),
-        needed_with: None,
-        meaning: "Moisture up to which water is bound, in kg of water a kg of dry solid; wood has 0.25 to 0.40.",
-        example: "0.3",
-    }],
-    tables: &[],
-};
-
-/// From the values of its keys.
-fn made(values: &LawValues, isotherm: bool) -> Evaporation {
-    Evaporation {
-        fibre_saturation: values.table(0).map(|bound| bound[0]),
-        isotherm,
-    }
-}
 
 /// A particle whose surface is in equilibrium with its water (docs/theory.md, DRY-1): the vapour there has the concentration
 ///
@@ -89,13 +40,9 @@ mod tests {
     #[test]
     fn free_water_has_the_vapour_of_the_steam_tables() {
         // IAPWS-IF97: saturated vapour of 60 °C 0.13043 kg/m³; of an ideal gas 0.12923, Antoine's pressure 0.3 % below.
-        let free = LAW.make;
-        let law = match *free(&LawValues {
-            tables: vec![None],
-            ..LawValues::default()
-        }) {
-            RateLaw::Evaporation(law) => law,
-            other => panic!("{other:?}"),
+        let law = Evaporation {
+            fibre_saturation: None,
+            isotherm: false,
         };
         let c = law.concentration([1.0, 1.0], 333.15) * 18.015e-3;
         assert!((c / 0.13043 - 1.0).abs() < 0.015, "{c}");

@@ -11,6 +11,7 @@ pub mod layer_diffusivity;
 pub mod power_law;
 pub mod rate_law;
 pub mod shrinking_core;
+pub mod wet_entries;
 
 pub use arrhenius::Arrhenius;
 pub use conversion::{Conversion, GrainSurface};
@@ -35,7 +36,7 @@ pub static RATE_LAWS: &[&LawEntry<RateLaw>] = &[
     &conversion::NUCLEATION,
     &conversion::RANDOM_PORE,
     &conversion::EQUILIBRIUM_PRESSURE,
-    &evaporation::LAW,
-    &evaporation::WOOD,
-    &devolatilisation::LAW,
+    &wet_entries::EVAPORATION,
+    &wet_entries::WOOD_DRYING,
+    &wet_entries::DEVOLATILISATION,
 ];

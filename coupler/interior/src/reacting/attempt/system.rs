@@ -4,9 +4,9 @@ use calcine_numerics::rosenbrock::SystemDerivatives;
 use calcine_numerics::{Dual, StiffSystem};
 
 use super::film_heat::FilmHeat;
-use crate::reacting::chemistry::SolidChemistry;
 #[cfg(doc)]
-use crate::reacting::drying::BoundWater;
+use crate::reacting::bound_water::BoundWater;
+use crate::reacting::chemistry::SolidChemistry;
 use crate::reacting::film_balance::{self, FilmBalance};
 use crate::reacting::passage::{FilmFlow, ParticleSurroundings};
 use crate::reacting::rates::RateState;
