@@ -8,18 +8,13 @@ use calcine_coupler::physics::thermo::Element;
 use crate::case::model::{Laws, MaterialSpec, ReactionSpec};
 use crate::case::table::{NO_DRYING, TableReader, is_moisture};
 
-/// Refuses water of a material that no reaction takes up: nothing else would dry it.
+/// Refuses water of a material that no reaction takes up: nothing else would dry it. Of reactions that could all be read.
 pub(super) fn no_drying(
     root: &TableReader<'_>,
     solids: &[SolidSpecies],
     materials: &[MaterialSpec],
     reactions: &[Reaction],
 ) {
-    // Which one does is not known where one could not be read.
-    let unread = reactions.is_empty() && root.has("reactions");
-    if unread || !super::reactions::are_all(root, reactions) {
-        return;
-    }
     let tables = root.table("materials").map(|section| section.named());
     let tables = tables.unwrap_or_default();
     for (s, solid) in solids.iter().enumerate() {

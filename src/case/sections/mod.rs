@@ -104,7 +104,9 @@ pub(super) fn case(
         particles::weights_fit(root, particles, laws);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
-    drying::no_drying(root, &solids, &materials, &reactions);
+    if reactions::are_all(root, &reactions) {
+        drying::no_drying(root, &solids, &materials, &reactions);
+    }
     let populations = particles.as_deref().unwrap_or_default();
     let chemistry = inventory::inventory(solids, reactions, &materials, populations);
     if let Some(particles) = &particles {
