@@ -239,6 +239,10 @@ fn spacing_order_and_comments_do_not_change_the_hash() {
         .replace("[time] ", "[time] # again ");
     let hash = |text: &str| parse(path, text, &[]).unwrap().hash;
     assert_eq!(hash(&text), hash(&other));
+    // The title is for people.
+    let titled = text.replacen("title = \"", "title = \"Another: ", 1);
+    assert_ne!(titled, text);
+    assert_eq!(hash(&text), hash(&titled));
     assert_ne!(hash(&text), hash(&text.replace("0.5 m/s\"", "0.6 m/s\"")));
 }
 

@@ -63,11 +63,44 @@ fn a_run_killed_before_its_first_checkpoint_starts_again_and_a_finished_one_does
     assert!(resumed.status.success());
     let other = native(&out, "1.8 s").arg("--resume").output().unwrap();
     let text = String::from_utf8_lossy(&other.stderr).into_owned();
-    assert!(text.contains("its case differs from this one"), "{text}");
+    assert!(
+        text.contains("is of another case than this: `time.end` is"),
+        "{text}"
+    );
+    let said = [
+        "or continue from it with the changes by `--from",
+        "case.toml holds the case as it was run",
+    ];
+    assert!(said.iter().all(|words| text.contains(words)), "{text}");
     assert_eq!(
         fs::read_to_string(out.join("summary.json")).unwrap(),
         summary
     );
+    // The title is for people.
+    let titled = ["--resume", "--set", "title=\"Another title\""];
+    assert!(
+        native(&out, "1.9 s")
+            .args(titled)
+            .status()
+            .unwrap()
+            .success()
+    );
+
+    // The command that the folder keeps names a case that is gone.
+    let kept = out.join("command.json");
+    let command = fs::read_to_string(&kept).unwrap();
+    fs::write(&kept, command.replace("heated-column.toml", "gone.toml")).unwrap();
+    let gone = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .args(["run", "--resume"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&gone.stderr).into_owned();
+    assert_eq!(gone.status.code(), Some(2), "{text}");
+    let place = format!("{} holds it as it was run", out.join("case.toml").display());
+    assert!(text.contains("gone.toml, the case of the run in"), "{text}");
+    assert!(text.contains(&place), "{text}");
+    fs::write(&kept, command).unwrap();
 
     let verdict = summary.replacen("\"verdict\": \"none\"", "\"verdict\": \"running\"", 1);
     assert_ne!(verdict, summary);
@@ -79,7 +112,7 @@ fn a_run_killed_before_its_first_checkpoint_starts_again_and_a_finished_one_does
     let other = native(&out, "1.8 s").arg("--resume").output().unwrap();
     let text = String::from_utf8_lossy(&other.stderr).into_owned();
     assert_eq!(other.status.code(), Some(2), "{text}");
-    assert!(text.contains("this case has"), "{text}");
+    assert!(text.contains("is of another case than this"), "{text}");
     // One that was interrupted left a checkpoint: where that is gone, nothing of its results is thrown away.
     let stopped = verdict.replacen("\"running\"", "\"stopped\"", 1);
     fs::write(out.join("summary.json"), &stopped).unwrap();

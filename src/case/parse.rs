@@ -17,6 +17,9 @@ use crate::laws::LawCatalogue;
 /// Version of the format that the readers know.
 pub(super) const FORMAT: u64 = 1;
 
+/// Place of the title, which is for people and changes nothing of a run.
+const TITLE: &str = ".title";
+
 /// The text of a case file.
 pub(super) fn text_of(path: &Path) -> Result<String, CaseErrors> {
     let bytes = std::fs::read(path).map_err(|cause| {
@@ -106,7 +109,7 @@ fn blamed(problem: &Problem, key: &str) -> bool {
     inside(place, key) || (rule.trim_start() == table::UNKNOWN && inside(key, place))
 }
 
-/// SHA-256 (hex) of the values, whatever their order, spacing and comments.
+/// SHA-256 (hex) of the values, whatever their order, spacing and comments, without the title.
 fn hash(table: &dyn toml_edit::TableLike) -> String {
     let mut text = String::new();
     canonical(&mut text, "", table);
@@ -118,6 +121,9 @@ fn canonical(text: &mut String, place: &str, table: &dyn toml_edit::TableLike) {
     entries.sort_by_key(|(key, _)| *key);
     for (key, item) in entries {
         let place = format!("{place}.{key}");
+        if place == TITLE {
+            continue;
+        }
         if let Some(list) = item.as_array_of_tables() {
             for (i, table) in list.iter().enumerate() {
                 canonical(text, &format!("{place}[{i}]"), table);

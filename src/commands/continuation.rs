@@ -123,6 +123,22 @@ impl Recorded {
             Failure::new(exit::CASE, message)
         })
     }
+
+    /// An error where the case file is gone.
+    pub(super) fn needs_case(&self, out: &Path) -> Result<(), Failure> {
+        if Path::new(&self.case).exists() {
+            return Ok(());
+        }
+        let folder = word(out.as_os_str());
+        let message = format!(
+            "{}, the case of the run in {}, is not there\n  help: name it where it is, `calcine run CASE --resume {folder}`, or put it \
+             back: {} holds it as it was run (files that it names are found from where it stood)",
+            self.case,
+            out.display(),
+            out.join(files::CASE).display()
+        );
+        Err(Failure::new(exit::CASE, message))
+    }
 }
 
 /// What to do where a command of several runs was interrupted in one of them.

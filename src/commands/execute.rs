@@ -18,7 +18,7 @@ use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
 use crate::results::inertial_number::InertialNumberStatistics;
-use crate::results::{Summary, difference};
+use crate::results::{CaseIdentity, Summary, same_case};
 use crate::simulation::{self, Ending, Simulation, SimulationError};
 
 /// How a case is run.
@@ -134,17 +134,8 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
 
 /// `--resume` of a run that is complete: there is nothing to do.
 fn over(case: &Case, out: &Path, summary: &Summary, strict: bool) -> Result<Done, Failure> {
-    if summary.case.hash != case.hash {
-        let message = format!(
-            "the run in {} is complete, and its case differs from this one (hash {} there, {} here){}; `--from {0}` continues from \
-             it, into another folder",
-            out.display(),
-            summary.case.hash,
-            case.hash,
-            difference(out, &case.effective, &case.files)
-        );
-        return Err(Failure::new(exit::CASE, message));
-    }
+    same_case(out, &summary.case.hash, CaseIdentity::of(case))
+        .map_err(|error| Failure::told(exit::CASE, &error))?;
     let code = exit::complete(summary, strict);
     let text = format!("the run in {} is already complete", out.display());
     Ok(Done { code, text })

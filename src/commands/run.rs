@@ -132,6 +132,7 @@ impl Arguments {
             )
         })?;
         let before = before.arguments;
+        recorded.needs_case(folder)?;
         let arguments = Self {
             out: Some(folder.to_owned()),
             threads: self.threads.or(before.threads),

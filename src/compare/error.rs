@@ -22,15 +22,13 @@ pub enum CompareError {
         count: usize,
     },
     /// A run of another case.
-    #[error("{} holds a run of a case with the hash {stored}, this case has {hash}", path.display())]
+    #[error("{} holds a run of another case than this: {differences}", path.display())]
     #[diagnostic(help("run that pairing again with this case file and the same `--set` values"))]
     OtherCase {
         /// Its result directory.
         path: PathBuf,
-        /// The hash in its summary.
-        stored: String,
-        /// The hash of the case.
-        hash: String,
+        /// Which keys and files differ.
+        differences: String,
     },
     /// Snapshots with different fields or numbers of cells or particles.
     #[error("the field `{field}` has {found} values in `{run}` and {expected} in `{reference}`")]

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use crate::case::model::Case;
 pub use crate::results::files::COMPARISON;
 use crate::results::read::Series;
-use crate::results::{Summary, files};
+use crate::results::{CaseIdentity, Summary, differences, files};
 use source::Source;
 
 pub use self::agreement::Agreement;
@@ -87,8 +87,7 @@ fn open(case: &Case, name: &str, directory: &Path) -> Result<Source, CompareErro
     if summary.case.hash != case.hash {
         return Err(CompareError::OtherCase {
             path: directory.to_owned(),
-            stored: summary.case.hash,
-            hash: case.hash.clone(),
+            differences: differences(directory, &summary.case.hash, CaseIdentity::of(case)),
         });
     }
     Ok(Source {

@@ -24,7 +24,7 @@ use super::{steady, store};
 use crate::case::plant::PlantCase;
 use crate::results::sheet::number;
 use crate::results::summary::{CaseName, RunFailure};
-use crate::results::{CASE, ResultsError, SUMMARY, Verdict, difference, files, kind};
+use crate::results::{CASE, CaseIdentity, ResultsError, SUMMARY, Verdict, files, kind, same_case};
 use crate::simulation::claim;
 
 /// How a run begins, and what it shows.
@@ -159,15 +159,17 @@ fn occupied(
             time: summary.time_s,
         }));
     }
-    if summary.case.hash != case.hash {
-        return Err(PlantRunError::Results(ResultsError::OtherCase {
-            path: out.join(SUMMARY),
-            stored: summary.case.hash,
-            hash: case.hash.clone(),
-            keys: difference(out, &case.effective, &BTreeMap::new()),
-        }));
-    }
+    same_case(out, &summary.case.hash, identity(case, &BTreeMap::new()))?;
     Ok(summary.is_complete().then_some(summary))
+}
+
+/// The case of a plant, of which no files are kept.
+fn identity<'a>(case: &'a PlantCase, files: &'a BTreeMap<String, String>) -> CaseIdentity<'a> {
+    CaseIdentity {
+        effective: &case.effective,
+        hash: &case.hash,
+        files,
+    }
 }
 
 /// The run at its start, or where its checkpoint stands.
@@ -180,14 +182,7 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
         false => None,
     };
     if let Some(saved) = saved {
-        if saved.case_hash != case.hash {
-            return Err(PlantRunError::Results(ResultsError::OtherCase {
-                path: out.join("checkpoint"),
-                stored: saved.case_hash,
-                hash: case.hash.clone(),
-                keys: difference(out, &case.effective, &BTreeMap::new()),
-            }));
-        }
+        same_case(out, &saved.case_hash, identity(case, &BTreeMap::new()))?;
         let mut run = PlantRun::new(plant, integrator, tolerance)?;
         let series = Table::resume(out, SERIES, saved.series)?;
         let distributions = Table::resume(out, DISTRIBUTIONS, saved.distributions)?;

@@ -5,18 +5,58 @@ use std::path::Path;
 
 use toml_edit::{DocumentMut, Item, Value};
 
-use super::{CASE, Summary};
+use super::{CASE, ResultsError, Summary};
+use crate::case::model::Case;
 
 /// Most keys that are named.
 const MOST: usize = 5;
 
-/// What differs between the case in a results folder and another one, as the end of a sentence: keys with both values, and files
-/// of the same name that hold something else; empty where it is not known.
-pub(crate) fn difference(
+/// A case as it is compared with that of a results folder.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CaseIdentity<'a> {
+    /// Its text, with `--set` applied.
+    pub(crate) effective: &'a str,
+    /// Its hash.
+    pub(crate) hash: &'a str,
+    /// The hashes of the files that it names.
+    pub(crate) files: &'a BTreeMap<String, String>,
+}
+
+impl<'a> CaseIdentity<'a> {
+    /// That of the case of a bed.
+    pub(crate) fn of(case: &'a Case) -> Self {
+        Self {
+            effective: &case.effective,
+            hash: &case.hash,
+            files: &case.files,
+        }
+    }
+}
+
+/// Refuses a results folder whose run is of a case with another hash.
+pub(crate) fn same_case(
     results: &Path,
-    effective: &str,
-    files: &BTreeMap<String, String>,
-) -> String {
+    stored: &str,
+    case: CaseIdentity<'_>,
+) -> Result<(), ResultsError> {
+    if stored == case.hash {
+        return Ok(());
+    }
+    Err(ResultsError::OtherCase {
+        path: results.to_owned(),
+        kept: results.join(CASE),
+        differences: differences(results, stored, case),
+    })
+}
+
+/// What differs between the case in a results folder and another one: keys with both values, and files of the same name that
+/// hold something else; the hashes where neither says it.
+pub(crate) fn differences(results: &Path, stored: &str, case: CaseIdentity<'_>) -> String {
+    let CaseIdentity {
+        effective,
+        hash,
+        files,
+    } = case;
     let mut differ = keys(results, effective);
     let there = Summary::read(results).map(|summary| summary.case.files);
     let there = there.unwrap_or_default();
@@ -35,11 +75,13 @@ pub(crate) fn difference(
         differ.push(format!("`{name}` {what}"));
     }
     match differ.len() {
-        0 => String::new(),
+        0 => format!(
+            "no key differs and no file, but the hash is {stored} there and {hash} here, as where another release of Calcine began it"
+        ),
         count if count > MOST => {
-            format!(": {} and {} more", differ[..MOST].join(", "), count - MOST)
+            format!("{} and {} more", differ[..MOST].join(", "), count - MOST)
         }
-        _ => format!(": {}", differ.join(", ")),
+        _ => differ.join(", "),
     }
 }
 
@@ -54,7 +96,8 @@ fn keys(results: &Path, effective: &str) -> Vec<String> {
     keys.dedup();
     let shown = |value: Option<&String>| value.map_or("nothing", String::as_str).to_owned();
     keys.into_iter()
-        .filter(|key| there.get(*key) != here.get(*key))
+        // The title is for people: the hash leaves it out.
+        .filter(|key| *key != "title" && there.get(*key) != here.get(*key))
         .map(|key| {
             let (old, new) = (shown(there.get(key)), shown(here.get(key)));
             format!("`{key}` is {old} there and {new} here")

@@ -29,22 +29,20 @@ pub enum ResultsError {
         time: f64,
     },
     /// A checkpoint or the start of a run of another case.
-    #[error(
-        "{} is of a case with the hash {stored}, this case has {hash}{keys}",
-        path.display()
-    )]
+    #[error("the run in {} is of another case than this: {differences}", path.display())]
     #[diagnostic(help(
-        "resume with the case file, the files that it names and the `--set` values that the run began with"
+        "resume with the case, the files that it names and the `--set` values that the run began with ({} holds the case as it was \
+         run), or continue from it with the changes by `--from {}` and another `--out`",
+        kept.display(),
+        path.display()
     ))]
     OtherCase {
-        /// The file that says so.
+        /// The results folder.
         path: PathBuf,
-        /// The hash it stores.
-        stored: String,
-        /// The hash of this case.
-        hash: String,
-        /// Which keys differ, as the end of the sentence.
-        keys: String,
+        /// The case as it was run, in that folder.
+        kept: PathBuf,
+        /// Which keys and files differ.
+        differences: String,
     },
     /// A directory in which no run was begun.
     #[error("{} is not the results folder of a run: {fact}", path.display())]

@@ -34,7 +34,7 @@ pub mod warnings;
 use calcine_coupler::mesh::Mesh;
 
 use crate::case::model::Case;
-pub(crate) use difference::difference;
+pub(crate) use difference::{CaseIdentity, differences, same_case};
 pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo, unoccupied};

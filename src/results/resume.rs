@@ -9,7 +9,6 @@ use calcine_coupler::coordinator::sum_of_file;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::difference;
 use super::files::{DRAFT, gas_file, particle_file};
 use super::inertial_number::InertialNumberStatistics;
 use super::moment::SnapshotMoment;
@@ -18,6 +17,7 @@ use super::series::SeriesMark;
 use super::steps::StepSummary;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::warnings::Warnings;
+use super::{CaseIdentity, same_case};
 use super::{ResultsError, STORE, SUMMARY, files};
 use crate::case::model::Case;
 
@@ -187,14 +187,7 @@ pub(super) fn restore(
         );
         return Err(ResultsError::content(&path, fact));
     }
-    if counters.case_hash != case.hash {
-        return Err(ResultsError::OtherCase {
-            path,
-            stored: counters.case_hash,
-            hash: case.hash.clone(),
-            keys: difference(results, &case.effective, &case.files),
-        });
-    }
+    same_case(results, &counters.case_hash, CaseIdentity::of(case))?;
     let count = counters.snapshots.len();
     for number in 0..count {
         for name in [gas_file(number), particle_file(number)] {
@@ -230,14 +223,7 @@ pub fn may_start_again(results: &Path, case: &Case) -> Result<bool, ResultsError
         return Ok(true);
     }
     let summary = Summary::read(results)?;
-    if summary.case.hash != case.hash {
-        return Err(ResultsError::OtherCase {
-            path,
-            stored: summary.case.hash,
-            hash: case.hash.clone(),
-            keys: difference(results, &case.effective, &case.files),
-        });
-    }
+    same_case(results, &summary.case.hash, CaseIdentity::of(case))?;
     // One that was interrupted left a checkpoint, which is gone: what it computed is not thrown away.
     Ok(match summary.verdict {
         Verdict::Running => true,

@@ -38,7 +38,7 @@ pub struct Problems {
     asked: RefCell<BTreeSet<String>>,
     /// Places whose values are of another kind, or have no meaning.
     unread: RefCell<BTreeSet<String>>,
-    /// Places whose values can be read, but are not taken.
+    /// Places whose values can be read, but are not taken, and those of keys that are there misspelt.
     refused: RefCell<BTreeSet<String>>,
     /// Sections of which nothing could be made.
     unusable: RefCell<BTreeSet<String>>,
@@ -397,10 +397,11 @@ impl<'a> TableReader<'a> {
                     let help = "remove it: it belongs to another choice than this table's";
                     (NO_EFFECT, help.into())
                 }
-                None => (
-                    UNKNOWN,
-                    self.elsewhere(key).unwrap_or_else(|| self.instead_of(key)),
-                ),
+                None => {
+                    self.stands_for_missing(key);
+                    let help = self.elsewhere(key).unwrap_or_else(|| self.instead_of(key));
+                    (UNKNOWN, help)
+                }
             };
             let is_known = declared.is_some();
             let drying = !is_known && self.pattern.starts_with("materials") && is_moisture(key);
@@ -420,6 +421,16 @@ impl<'a> TableReader<'a> {
                 false => ProblemKind::Value,
             };
             self.problems.add(span, message, help, kind);
+        }
+    }
+
+    /// Where a key that is not declared is near a declared one which is not there, that one is not told as missing too.
+    fn stands_for_missing(&self, key: &str) {
+        let absent = self.keys.iter().map(|one| one.name);
+        let absent = absent.filter(|name| self.table.get(name).is_none());
+        if let Some(near) = nearest(key, absent) {
+            let mut refused = self.problems.refused.borrow_mut();
+            refused.insert(self.place_of(near));
         }
     }
 
