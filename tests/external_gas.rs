@@ -74,7 +74,6 @@ fn falling(folder: &Path) -> PathBuf {
     fs::copy(c_solver::gas(), folder.join("column-gas")).unwrap();
     let text = fs::read_to_string(program::shipped("settled-bed")).unwrap();
     let text = text
-        .replace("#:schema schema.json\n", "")
         .replace("cells = [2, 2, 15]", "cells = [1, 1, 15]")
         .replace("end = \"0.4 s\"", "end = \"0.1 s\"");
     let external = "[external.gas]\nprogram = \"column-gas\"\narguments = [\"width=0.016\", \"depth=0.016\", \

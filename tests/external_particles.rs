@@ -35,7 +35,6 @@ fn falling(folder: &Path) -> PathBuf {
     }
     let text = fs::read_to_string(program::shipped("settled-bed")).unwrap();
     let text = text
-        .replace("#:schema schema.json\n", "")
         .replace("cells = [2, 2, 15]", "cells = [1, 1, 15]")
         .replace(
             "end = \"0.4 s\"",

@@ -24,7 +24,6 @@ const CLOSED: [&str; 2] = [
 fn light(folder: &Path) -> PathBuf {
     let text = fs::read_to_string(program::shipped("settled-bed")).unwrap();
     let text = text
-        .replace("#:schema schema.json\n", "")
         .replace("16 16 120 mm", "8 8 64 mm")
         .replace("cells = [2, 2, 15]", "cells = [1, 1, 8]")
         .replace(
