@@ -22,6 +22,18 @@ pub struct ParcelMotion {
     pub packing: ParcelPacking,
     /// What collisions do beside.
     pub collisions: ParcelCollisions,
+    /// Friction under the stress of the solid; none where it is not given.
+    pub friction: Option<ParcelFriction>,
+}
+
+/// Coulomb's friction of the solid with itself and, by the friction of their impacts, with walls, under the stress of the solid
+/// (docs/theory.md, NSP-1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParcelFriction {
+    /// Coefficient of friction within the bed, 0 or above.
+    pub bed: f64,
+    /// Slip in m/s below which friction falls off, above 0.
+    pub slip: f64,
 }
 
 /// A patch that parcels rebound from.

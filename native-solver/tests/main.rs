@@ -26,6 +26,7 @@ mod numerics;
 mod openings;
 mod parcel_beds;
 mod parcel_fluidised;
+mod parcel_friction;
 mod parcel_packing;
 mod parcel_tracking;
 mod planted;

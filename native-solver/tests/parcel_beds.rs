@@ -46,6 +46,7 @@ pub fn motion(mesh: &Mesh, restitution: f64, friction: f64) -> ParcelMotion {
             isotropy: false,
             seed: 1,
         },
+        friction: None,
     }
 }
 

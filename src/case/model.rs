@@ -17,7 +17,7 @@ use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{ContactLaw, LostParticles, Wall};
-use calcine_coupler::parcels::{ParcelCollisions, ParcelPacking};
+use calcine_coupler::parcels::{ParcelCollisions, ParcelFriction, ParcelPacking};
 pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
@@ -201,6 +201,8 @@ pub struct ParcelSpec {
     pub packing: ParcelPacking,
     /// Damping and isotropy.
     pub collisions: ParcelCollisions,
+    /// Friction under the stress.
+    pub friction: Option<ParcelFriction>,
 }
 
 /// Which clock the motion of particles belongs to (docs/theory.md, TSM-7).

@@ -63,6 +63,7 @@ fn motion(case: &Case, spec: &ParcelSpec, mesh: &Mesh) -> Result<Motion, ParcelW
         walls: walls.collect::<Result<_, _>>()?,
         packing: spec.packing,
         collisions: spec.collisions,
+        friction: spec.friction,
     })))
 }
 

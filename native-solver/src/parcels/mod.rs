@@ -5,7 +5,9 @@ mod changes;
 mod collisions;
 mod error;
 mod flight;
+mod friction;
 mod packing;
+mod rubbing;
 mod state;
 mod step;
 mod stress;
@@ -35,6 +37,7 @@ use collisions::CollisionStep;
 pub use error::ParcelError;
 pub use flight::Flight;
 use packing::{Packer, RowAmounts};
+use rubbing::RubStep;
 use step::{FlyingParcel, fly};
 pub use tetrahedra::{Beyond, Tetrahedra};
 pub use track::WayEnd;
@@ -207,7 +210,7 @@ impl NativeParcels {
         Ok(support)
     }
 
-    /// Has parcels meet each other by the averages of the mesh: damping, the stress, isotropy. The impulse in N s that walls gave
+    /// Has parcels meet each other by the averages of the mesh: damping, the stress, friction, isotropy. The impulse in N s that walls gave
     /// by the stress.
     fn crowd(
         &mut self,
@@ -233,11 +236,26 @@ impl NativeParcels {
         let given = self
             .packer
             .act(packing, &self.tetrahedra, (parcels, amounts), time)?;
+        let given = given + self.rub((parcels, amounts), time);
         if collisions.isotropy {
             let solid = self.packer.solid(&self.tetrahedra, parcels, amounts);
             step.redraw(parcels, &solid);
         }
         Ok(given)
+    }
+
+    /// Has parcels rub under the stress; the impulse in N s that walls gave.
+    fn rub(&self, rows: (&mut [FlyingParcel], RowAmounts<'_>), time: f64) -> Vec3 {
+        let Some(friction) = self.motion.friction else {
+            return Vec3::zeros();
+        };
+        let step = RubStep {
+            friction,
+            walls: &self.walls,
+            tetrahedra: &self.tetrahedra,
+            time,
+        };
+        step.act(&self.packer, rows)
     }
 
     /// Cell of each parcel.

@@ -22,7 +22,7 @@ use super::error::ParcelError;
 use super::step::{FlyingParcel, PIECE};
 use super::stress::StressCurve;
 use super::tetrahedra::Tetrahedra;
-use crate::numerics::grid::MeshGraph;
+use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
@@ -70,8 +70,12 @@ pub struct CellSolid {
 pub struct Packer {
     grid: Arc<MeshGraph>,
     weights: LinearWeights,
+    /// The stress in Pa that acted last; empty where none does.
+    stress: Vec<f64>,
     /// Face of the grid of each face of the mesh, and 1 where both have their normals out of the face's owner, else −1.
     grid_face: Vec<(u32, f64)>,
+    /// Face of the mesh of each face of the grid.
+    mesh_face: Vec<u32>,
     matrix: Matrix,
     incomplete: Incomplete,
     krylov: Krylov,
@@ -83,20 +87,50 @@ impl Packer {
         let mesh = tetrahedra.mesh();
         let grid = Arc::new(MeshGraph::new(mesh));
         let mut grid_face = vec![(0, 1.0); mesh.faces()];
+        let mut mesh_face = vec![0; grid.faces.len()];
         for cell in 0..mesh.cells() {
             for (&face, link) in mesh.faces_of(cell).iter().zip(grid.links(cell)) {
                 let side = mesh.side(cell, face as usize);
                 grid_face[face as usize] = (link.face, link.sign * side);
+                mesh_face[link.face as usize] = face;
             }
         }
         Self {
             weights: LinearWeights::new(mesh),
+            stress: Vec::new(),
             matrix: Matrix::new(Arc::clone(&grid)),
             incomplete: Incomplete::default(),
             krylov: Krylov::default(),
             grid_face,
+            mesh_face,
             grid,
         }
+    }
+
+    /// The stress in Pa that acted last; empty where none does.
+    pub fn stress(&self) -> &[f64] {
+        &self.stress
+    }
+
+    /// How parcels belong to cells.
+    pub fn weights(&self) -> &LinearWeights {
+        &self.weights
+    }
+
+    /// Cells and faces.
+    pub fn grid(&self) -> &MeshGraph {
+        &self.grid
+    }
+
+    /// Face of the mesh of a face of the grid.
+    pub fn face_of_mesh(&self, face: usize) -> usize {
+        self.mesh_face[face] as usize
+    }
+
+    /// The stress that acted last at a wall in Pa, as the wall carries it.
+    pub fn stress_at_wall(&self, cell: usize, face: usize) -> f64 {
+        let face = &self.grid.faces[face];
+        self.stress[cell] + self.risen(&self.stress, cell, face)
     }
 
     /// What belongs to each cell.
@@ -153,6 +187,7 @@ impl Packer {
                 let of = |&fraction: &f64| stress.stress(fraction).0;
                 let stress: Vec<f64> = solid.fraction.iter().map(of).collect();
                 let changes = self.changes(&stress, &solid.mass, time);
+                self.stress = stress;
                 let mean = solid.momentum.iter().zip(&solid.mass);
                 let mean: Vec<Vec3> = mean.map(|(p, &m)| per_mass(*p, m)).collect();
                 let changes = self.weights.spread(tetrahedra.mesh(), &changes);
@@ -228,6 +263,7 @@ impl Packer {
                 })
                 .collect();
             if round == 1 {
+                self.stress = stress.clone();
                 for ((parcel, change), mass) in parcels.iter_mut().zip(felt).zip(amounts.mass) {
                     parcel.pushed(change);
                     given += *mass * change;
@@ -369,8 +405,8 @@ impl Packer {
                 let face = &grid.faces[link.face as usize];
                 let normal = link.sign * face.normal;
                 if link.is_boundary() {
-                    let more = self.rise(stress, cell, normal) * face.owner_distance;
-                    sum -= per_mass(time * more.max(0.0) * face.area * normal, mass[cell]);
+                    let more = self.risen(stress, cell, face);
+                    sum -= per_mass(time * more * face.area * normal, mass[cell]);
                 } else {
                     let other = link.other as usize;
                     let impulse = -time * (stress[other] - stress[cell]) * face.area * normal;
@@ -380,6 +416,11 @@ impl Packer {
             sum
         });
         changes
+    }
+
+    /// By how much the stress at a wall is above that of its cell, in Pa.
+    fn risen(&self, stress: &[f64], cell: usize, wall: &Face) -> f64 {
+        (self.rise(stress, cell, wall.normal) * wall.owner_distance).max(0.0)
     }
 
     /// How fast the stress rises along a direction by the neighbours of a cell, in Pa/m (least squares).

@@ -53,6 +53,12 @@ impl WallFaces {
         })
     }
 
+    /// The coefficient of friction of a boundary face with a population.
+    pub fn friction(&self, face: usize, population: usize) -> f64 {
+        let wall = &self.walls[self.of_face[face - self.internal] as usize];
+        wall.impact[population].friction
+    }
+
     /// The impact of a population on a boundary face at a place: its properties, and the wall's velocity along itself.
     pub fn at(
         &self,

@@ -23,6 +23,24 @@ const PARCELS: &[Key] = &[
     key("damping", Truth, Default("false"), "Whether collisions damp velocities towards their mean.", "true"),
     key("isotropy", Truth, Default("false"), "Whether collisions draw velocities anew, so that they become isotropic.", "true"),
     key("seed", Whole(0, MOST), Without("required with isotropy"), "Equal seeds give equal draws, bit for bit.", "1"),
+    key("friction", Table(PARCEL_FRICTION), Without("only parcels that meet a wall rub"), "Coulomb's friction under the stress of the solid: of the bed with itself, and with the walls by `friction` of [[contacts]] ([NSP-1](../theory.md#NSP-1)). With a packing only.", "{ bed = 0.5 }"),
+];
+
+const PARCEL_FRICTION: &[Key] = &[
+    key(
+        "bed",
+        Number(D::NONE, NotNegative),
+        Required,
+        "Coefficient of friction within the bed, the tangent of its angle of internal friction; 0 where only walls rub.",
+        "0.5",
+    ),
+    key(
+        "slip",
+        Number(D::VELOCITY, Positive),
+        Default("0.1 mm/s"),
+        "Slip between neighbouring cells, and at walls, below which friction falls off: what holds creeps by less than this from cell to cell. The smaller, the more iterations a step takes.",
+        "\"0.1 mm/s\"",
+    ),
 ];
 
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 //! `[motion.parcels]`: how parcels move.
 
-use calcine_coupler::parcels::{ParcelCollisions, ParcelPacking};
+use calcine_coupler::parcels::{ParcelCollisions, ParcelFriction, ParcelPacking};
 use calcine_coupler::physics::parcels::{CollisionTimes, HarrisCrighton};
 
 use crate::case::model::{Coupling, FreeMotion, MotionKind, MotionSpec, ParcelSpec, Population};
@@ -36,6 +36,7 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
     let damping = table.truth("damping");
     let isotropy = table.truth("isotropy");
     let seed = table.whole("seed");
+    let friction = friction(&table);
     table.finish();
     let (scheme, damping, isotropy) = (scheme?, damping?, isotropy?);
     let collide = damping || isotropy || scheme == PackingScheme::Explicit;
@@ -49,6 +50,12 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
             "has no `seed`, which velocities that are drawn anew need",
             help,
         );
+    }
+    if friction.is_some() && scheme == PackingScheme::None {
+        let rule =
+            "stands beside packing = \"none\", and it is the stress of the packing that presses";
+        let help = "write packing = \"implicit\", or remove it";
+        table.fail("friction", rule, help);
     }
     let stress = HarrisCrighton {
         pressure: pressure?,
@@ -78,6 +85,19 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
             isotropy,
             seed: seed.unwrap_or(0),
         },
+        friction,
+    })
+}
+
+/// `motion.parcels.friction`.
+fn friction(parcels: &TableReader<'_>) -> Option<ParcelFriction> {
+    let table = parcels.table("friction")?;
+    let bed = table.number("bed");
+    let slip = table.number("slip");
+    table.finish();
+    Some(ParcelFriction {
+        bed: bed?,
+        slip: slip?,
     })
 }
 
