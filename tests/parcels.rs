@@ -1,7 +1,7 @@
 //! Parcels, through the program: balances and interrupts.
 
 #![cfg(feature = "hdf5")]
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use calcine::results::Summary;
 
@@ -36,6 +36,44 @@ fn the_pressure_drop_of_a_bed_that_floats_is_its_weight_less_the_little_that_the
     let weight = 9.81 * (beads * (860.0 - 1.2) / (0.054 * 0.018) + 1.2 * 0.18);
     let missing = 1.0 - mean / weight;
     assert!((0.0..0.015).contains(&missing), "{mean} of {weight} Pa");
+}
+
+/// Mean slope of the drum of parcels in degrees from 0.4 s on.
+fn slope(folder: &std::path::Path, name: &str, set: &[&str]) -> f64 {
+    let out = folder.join(name);
+    let inputs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good");
+    program::run(&inputs.join("drum-parcels.toml"), &out, &[], set);
+    let summary = Summary::read(&out).unwrap();
+    let momentum = &summary.ledger.lines["particle_momentum"];
+    assert!(momentum.relative_error < 1e-12, "{momentum:?}");
+    let mut series = csv::Reader::from_path(out.join("series.csv")).unwrap();
+    let headers = series.headers().unwrap().clone();
+    let angle = headers
+        .iter()
+        .position(|one| one.starts_with("quantities.surface_angle"))
+        .unwrap();
+    let rows = series.records().map(Result::unwrap);
+    let late: Vec<f64> = rows
+        .filter(|row| row[0].parse::<f64>().unwrap() > 0.4)
+        .map(|row| row[angle].parse::<f64>().unwrap().to_degrees())
+        .collect();
+    late.iter().sum::<f64>() / late.len() as f64
+}
+
+#[test]
+fn a_drum_carries_its_bed_of_parcels_by_friction_under_the_stress() {
+    let folder = tempfile::tempdir().unwrap();
+    let end = "time.end=0.7 s";
+    let rough = slope(folder.path(), "rough", &[end]);
+    let smooth = [
+        end,
+        "motion.parcels.friction.bed=0",
+        "contacts[0].friction=0",
+    ];
+    let smooth = slope(folder.path(), "smooth", &smooth);
+    println!("{rough} degrees, without friction {smooth}");
+    assert!((14.0..34.0).contains(&rough), "{rough}");
+    assert!(smooth.abs() < 5.0, "{smooth}");
 }
 
 #[test]

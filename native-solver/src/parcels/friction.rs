@@ -34,7 +34,7 @@ pub struct RubbingCell {
 
 /// A face between two cells with solid.
 #[derive(Clone, Copy, Debug)]
-pub struct InnerFace {
+pub struct RubbingFace {
     /// Both cells.
     pub cells: [usize; 2],
     /// From the centre of mass of the first to that of the second, in m.
@@ -47,7 +47,7 @@ pub struct InnerFace {
 
 /// A face between a cell and a wall.
 #[derive(Clone, Copy, Debug)]
-pub struct WallFace {
+pub struct RubbingWall {
     /// The cell.
     pub cell: usize,
     /// From its centre of mass to the wall, in m.
@@ -72,8 +72,8 @@ struct RotationFit {
 #[derive(Clone, Debug)]
 pub struct RubbingSolid {
     cells: Vec<RubbingCell>,
-    inner: Vec<InnerFace>,
-    walls: Vec<WallFace>,
+    inner: Vec<RubbingFace>,
+    walls: Vec<RubbingWall>,
     fits: Vec<RotationFit>,
     /// Slip s₀ in m/s below which friction falls off.
     slip: f64,
@@ -102,8 +102,8 @@ impl RubbingSolid {
     /// Cells and the faces between and about them.
     pub fn new(
         cells: Vec<RubbingCell>,
-        inner: Vec<InnerFace>,
-        walls: Vec<WallFace>,
+        inner: Vec<RubbingFace>,
+        walls: Vec<RubbingWall>,
         slip: f64,
     ) -> Self {
         let mut fits = vec![RotationFit::default(); cells.len()];
@@ -321,7 +321,7 @@ mod tests {
                         .filter(|(axis, beyond)| beyond[*axis] < count[*axis])
                     {
                         let pair = [place(x, y, z), place(beyond[0], beyond[1], beyond[2])];
-                        inner.push(InnerFace {
+                        inner.push(RubbingFace {
                             cells: pair,
                             way: centre[pair[1]] - centre[pair[0]],
                             normal: Vec3::ith(axis, 1.0),
@@ -407,7 +407,7 @@ mod tests {
                 mass: 1e-3,
                 velocity: Vec3::new(0.0, 0.0, -0.3),
             };
-            let wall = WallFace {
+            let wall = RubbingWall {
                 cell: 0,
                 way: Vec3::new(0.0, 0.0, -0.01),
                 normal: Vec3::new(0.0, 0.0, -1.0),

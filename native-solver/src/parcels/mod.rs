@@ -4,6 +4,7 @@
 mod changes;
 mod collisions;
 mod error;
+mod firm;
 mod flight;
 mod friction;
 mod packing;
@@ -233,9 +234,12 @@ impl NativeParcels {
             step.damp(parcels, &solid);
         }
         let packing = &self.motion.packing;
-        let given = self
-            .packer
-            .act(packing, &self.tetrahedra, (parcels, amounts), time)?;
+        let given = self.packer.act(
+            (packing, self.motion.friction.is_some()),
+            &self.tetrahedra,
+            (parcels, amounts),
+            time,
+        )?;
         let given = given + self.rub((parcels, amounts), time);
         if collisions.isotropy {
             let solid = self.packer.solid(&self.tetrahedra, parcels, amounts);

@@ -68,7 +68,7 @@ pub struct CellSolid {
 /// Solves for the stress on a mesh and has it act.
 #[derive(Debug)]
 pub struct Packer {
-    grid: Arc<MeshGraph>,
+    pub(super) grid: Arc<MeshGraph>,
     weights: LinearWeights,
     /// The stress in Pa that acted last; empty where none does.
     stress: Vec<f64>,
@@ -76,9 +76,9 @@ pub struct Packer {
     grid_face: Vec<(u32, f64)>,
     /// Face of the mesh of each face of the grid.
     mesh_face: Vec<u32>,
-    matrix: Matrix,
-    incomplete: Incomplete,
-    krylov: Krylov,
+    pub(super) matrix: Matrix,
+    pub(super) incomplete: Incomplete,
+    pub(super) krylov: Krylov,
 }
 
 impl Packer {
@@ -166,10 +166,11 @@ impl Packer {
         }
     }
 
-    /// Has the stress act over a step in s; the impulse in N s that walls gave all parcels.
+    /// Has the stress act over a step in s; where the bed is firm, velocities change by the stress that keeps packed cells from being
+    /// compressed in place of that which moves parcels apart. The impulse in N s that walls gave all parcels.
     pub fn act(
         &mut self,
-        packing: &ParcelPacking,
+        (packing, firm): (&ParcelPacking, bool),
         tetrahedra: &Tetrahedra,
         (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
         time: f64,
@@ -177,7 +178,7 @@ impl Packer {
         match packing {
             ParcelPacking::None => Ok(Vec3::zeros()),
             ParcelPacking::Implicit(law) => {
-                self.implicit(law, tetrahedra, (parcels, amounts), time)
+                self.implicit((law, firm), tetrahedra, (parcels, amounts), time)
             }
             ParcelPacking::Explicit {
                 stress,
@@ -209,7 +210,7 @@ impl Packer {
 
     fn implicit(
         &mut self,
-        law: &HarrisCrighton,
+        (law, firm): (&HarrisCrighton, bool),
         tetrahedra: &Tetrahedra,
         (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
         time: f64,
@@ -263,7 +264,23 @@ impl Packer {
                 })
                 .collect();
             if round == 1 {
-                self.stress = stress.clone();
+                let felt = match firm {
+                    false => {
+                        self.stress = stress.clone();
+                        felt
+                    }
+                    true => {
+                        let firm = self.firm_stress(law, (&stress, &solid, &conductance), time);
+                        let changes = self.changes(&firm, &solid.mass, time);
+                        let changes = self.weights.spread(mesh, &changes);
+                        self.stress = firm;
+                        let at = |one: &FlyingParcel| {
+                            let share = tetrahedra.map(one.place).of(one.position);
+                            self.weights.at(mesh, &changes, (one.place, share))
+                        };
+                        begun.iter().map(at).collect()
+                    }
+                };
                 for ((parcel, change), mass) in parcels.iter_mut().zip(felt).zip(amounts.mass) {
                     parcel.pushed(change);
                     given += *mass * change;

@@ -4,7 +4,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::parcels::ParcelFriction;
 use calcine_coupler::physics::Vec3;
 
-use super::friction::{InnerFace, RubbingCell, RubbingSolid, WallFace};
+use super::friction::{RubbingCell, RubbingFace, RubbingSolid, RubbingWall};
 use super::packing::{Packer, RowAmounts};
 use super::step::FlyingParcel;
 use super::tetrahedra::Tetrahedra;
@@ -67,7 +67,7 @@ impl RubStep<'_> {
             let [own, other] = [face.owner, face.neighbour].map(|cell| solid.mass[cell]);
             let between =
                 (own * stress[face.neighbour] + other * stress[face.owner]) / (own + other);
-            inner.push(InnerFace {
+            inner.push(RubbingFace {
                 cells: rows,
                 way: grid.between(index) + offset[face.neighbour] - offset[face.owner],
                 normal: face.normal,
@@ -88,7 +88,7 @@ impl RubStep<'_> {
             let distance = face.owner_distance - offset[face.owner].dot(&face.normal);
             let way = distance * face.normal;
             let (_, velocity) = self.walls.at(of_mesh, 0, centre + way, face.normal);
-            walls.push(WallFace {
+            walls.push(RubbingWall {
                 cell: row,
                 way,
                 normal: face.normal,
