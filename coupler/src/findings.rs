@@ -48,13 +48,15 @@ pub enum FindingKind {
     NetworkSolver,
     /// A run whose balance of mass or energy is open at its end.
     OpenBalance,
+    /// Feeds that found no room for what they should have brought by the end of the run.
+    FeedsWait,
     /// View factors of particles that do not add up to their surface.
     ViewFactors,
 }
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::GasTemperature,
         Self::MassFraction,
         Self::MachNumber,
@@ -75,6 +77,7 @@ impl FindingKind {
         Self::NetworkIterations,
         Self::NetworkSolver,
         Self::OpenBalance,
+        Self::FeedsWait,
         Self::ViewFactors,
     ];
 
@@ -180,6 +183,12 @@ impl FindingKind {
                 "open_balance",
                 "the balance of mass or energy is open at the end of the run (its ledger): the solver of the gas stopped far from its \
                  solution; tighten its tolerances and loops; relative error",
+                "1",
+            ],
+            Self::FeedsWait => [
+                "feeds_wait",
+                "feeds brought less than `mass_rate` and `batch` state, as new particles found no room in their regions: make the regions \
+                 larger, or the flow smaller; share that is missing at the end",
                 "1",
             ],
             Self::ViewFactors => [

@@ -65,7 +65,7 @@ impl Contacts {
 }
 
 /// Why particles leave, and what to do about it.
-pub const LOST_REMEDY: &str = "particles leave where no wall closes the gas mesh, through a hole in a wall, or because the step is too long or \
+pub const LOST_REMEDY: &str = "particles leave where no wall closes the gas mesh, through a hole in a wall, where a wall that moves or a feed puts them, or because the step is too long or \
                                the contacts are too soft for their speed: see walls, step and overlap in `calcine check`; \
                                motion.lost = \"take-out\" takes them out and goes on";
 

@@ -5,17 +5,16 @@ use calcine_coupler::physics::kinetics::RateConstant;
 use calcine_coupler::physics::reaction::Arrhenius;
 
 use super::model::Case;
+use super::units::listed;
 use super::{
-    expectations, patch_cautions, reach_cautions, schedules, size_cautions, temperature_cautions,
-    time_cautions, used_up, wall_cautions,
+    expectations, idle_cautions, patch_cautions, reach_cautions, schedules, size_cautions,
+    temperature_cautions, time_cautions, used_up, wall_cautions,
 };
 
 /// Energies in J/mol that bonds have, no activation energy is above: that of carbon monoxide is 1072 kJ/mol.
 const STRONGEST_BOND: f64 = 1.1e6;
 /// Energy in J/mol below which a rate of particles hardly changes with temperature: at 300 K by 0.1 % a kelvin.
 const SLIGHT: f64 = 1e3;
-/// Most names in one warning.
-const MOST_NAMES: usize = 3;
 
 /// Warnings about a case, in a fixed order.
 pub fn cautions(case: &Case) -> Vec<String> {
@@ -31,6 +30,7 @@ pub fn cautions(case: &Case) -> Vec<String> {
     all.extend(patch_cautions::all(case));
     all.extend(wall_cautions::all(case));
     all.extend(time_cautions::all(case));
+    all.extend(idle_cautions::all(case));
     all
 }
 
@@ -119,20 +119,6 @@ fn orders_left_out(case: &Case) -> Vec<String> {
         }));
     }
     told
-}
-
-/// The first of some names, and how many follow.
-fn listed(names: &[&str]) -> Option<String> {
-    let shown: Vec<String> = names
-        .iter()
-        .take(MOST_NAMES)
-        .map(|name| format!("`{name}`"))
-        .collect();
-    let more = names.len().saturating_sub(MOST_NAMES);
-    match more {
-        0 => (!shown.is_empty()).then(|| shown.join(", ")),
-        _ => Some(format!("{} and {more} more", shown.join(", "))),
-    }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod expectations;
 mod fall;
 mod flow_numbers;
 mod flow_time;
+mod idle_cautions;
 mod impact;
 pub mod in_wall;
 mod input_files;

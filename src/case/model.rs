@@ -78,6 +78,8 @@ pub struct Case {
     pub gas: GasSetup,
     /// True where the gas is held as it is at the start.
     pub gas_held: bool,
+    /// True where the case says what gravity is.
+    pub gravity_is_stated: bool,
     /// Files of the gas' reactions.
     pub gas_files: Vec<PathBuf>,
     /// Populations, in the order of the file.

@@ -242,6 +242,23 @@ pub fn short(number: f64) -> String {
     rounded(number, 5)
 }
 
+/// Most names in one warning.
+const MOST_NAMES: usize = 3;
+
+/// The first of some names, and how many follow.
+pub(in crate::case) fn listed(names: &[&str]) -> Option<String> {
+    let shown: Vec<String> = names
+        .iter()
+        .take(MOST_NAMES)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let more = names.len().saturating_sub(MOST_NAMES);
+    match more {
+        0 => (!shown.is_empty()).then(|| shown.join(", ")),
+        _ => Some(format!("{} and {more} more", shown.join(", "))),
+    }
+}
+
 /// A computed number as warnings show it, to three digits.
 pub fn short3(number: f64) -> String {
     rounded(number, 2)

@@ -10,8 +10,8 @@ use super::model::Case;
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::{
-    buoyancy, contacts, flow_time, mesh_shape, overlap, patch_cautions, size_cautions,
-    temperature_cautions,
+    buoyancy, contacts, flow_time, idle_cautions, mesh_shape, overlap, patch_cautions,
+    size_cautions, temperature_cautions,
 };
 
 /// Warnings about a case with its mesh, and its particles with their temperatures in K and what was noted of their files, in a fixed
@@ -43,6 +43,8 @@ pub fn warnings(
     let flow = FlowNumbers::of(case, mesh, setup, packing);
     all.extend(flow.iter().flat_map(|flow| flow.warnings(case)));
     all.extend(mesh_shape::overlaps(case, mesh));
+    all.extend(idle_cautions::unseen_walls(case, mesh));
+    all.extend(idle_cautions::regions(case, mesh, setup));
     let populations = case.particles.iter();
     let splittings = populations.filter_map(|one| Splitting::of(case, one, void_fraction));
     for warning in splittings.flat_map(|one| one.warnings(case)) {

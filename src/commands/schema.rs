@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::console::say;
 use super::failure::Failure;
+use super::inputs::own_or_new;
 use crate::case::keys::{KINDS, kind_named, kind_names};
 use crate::case::schema::schema;
 use crate::exit;
@@ -37,6 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(text.trim_end())?;
         return Ok(exit::OK);
     };
+    own_or_new(file, '{', "--out")?;
     std::fs::write(file, text).map_err(|cause| Failure::unwritable(file, "--out", &cause))?;
     say(format_args!(
         "{}: name it in the first line of a case file, as\n  #:schema {0}",

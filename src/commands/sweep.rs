@@ -9,7 +9,7 @@ use super::console::{printed, say};
 use super::continuation::begin_again;
 use super::execute::{self, Settings};
 use super::failure::Failure;
-use super::inputs::{read_and_prepare, read_case, results_folder};
+use super::inputs::{own_or_new, read_and_prepare, read_case, results_folder};
 use super::parallel::Transport;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::compare::deviation::{Deviation, deviation};
@@ -105,6 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let combinations = combine(&axes);
     // Every case and folder is checked before the first one runs, and that the table can be written after the last one.
     if let Some(path) = &arguments.table {
+        own_or_new(path, '|', "--table")?;
         writable(path).map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
     }
     for settings in &combinations {

@@ -93,6 +93,9 @@ pub fn run_plant(case: &PlantCase, start: &PlantStart<'_>) -> Result<PlantEnding
         return Ok(PlantEnding::Complete(Box::new(summary)));
     }
     let claimed = claim(out)?;
+    if !start.resume && !out.join(SUMMARY).exists() {
+        claimed.refuse_others()?;
+    }
     let mut driven = begin(case, start)?;
     let _lock = claimed.keep();
     files::replace(&out.join(CASE), case.effective.as_bytes())?;

@@ -35,6 +35,17 @@ pub enum SimulationError {
         /// The results folder.
         folder: PathBuf,
     },
+    /// A folder that holds something else than a run's results.
+    #[error(
+        "{folder} is not the results folder of a run, and holds {names}, which a run would write over: name another folder with `--out`, \
+         or remove them"
+    )]
+    NotResults {
+        /// The results folder.
+        folder: PathBuf,
+        /// What it holds.
+        names: String,
+    },
     /// The results folder cannot be made, or not be written.
     #[error("no results can be written to {folder} ({cause}): name another folder with `--out`")]
     UnusableFolder {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, RunError};
 use rustix::fs::{FlockOperation, flock};
+use rustix::io::Errno;
 use tracing::dispatcher::Dispatch;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt;
@@ -20,6 +21,28 @@ use crate::results::{SUMMARY, Summary};
 
 /// A file that every run makes and holds locked while it lives.
 const LOCK: &str = "lock";
+
+/// What runs of beds and of plants write into their folder, and remove.
+const WRITTEN: [&str; 18] = [
+    "case.toml",
+    "checkpoint",
+    "checkpoint.before",
+    "checkpoint.new",
+    "command.json",
+    "distributions.csv",
+    "gas",
+    "gas.pvd",
+    "particles",
+    "particles.pvd",
+    "probes",
+    "report.html",
+    "results.h5",
+    "results.h5.new",
+    "series.csv",
+    "status.json",
+    "streams.csv",
+    "voids.csv",
+];
 
 /// Name of the run's own log in `log/`.
 const OWN_LOG: &str = "calcine.log";
@@ -39,7 +62,14 @@ pub(crate) struct ClaimedFolder {
     before: Option<BTreeSet<OsString>>,
     /// Folders above that were made for it, the lowest first.
     above: Vec<PathBuf>,
-    lock: Option<File>,
+    lock: Option<HeldFolder>,
+}
+
+/// The locks of a results folder, which hold while they live: that of the file, and of the folder itself, so that a run whose file
+/// was removed is not joined by another one.
+pub(crate) struct HeldFolder {
+    _file: File,
+    _folder: Option<File>,
 }
 
 /// Claims the results folder, makes it where it is absent, with its `log/`.
@@ -71,13 +101,42 @@ pub(crate) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
             folder: out.to_owned(),
         }
     })?;
-    claimed.lock = Some(file);
+    // Not every file system locks folders.
+    let folder = File::open(out).ok();
+    if let Some(folder) = &folder
+        && flock(folder, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK)
+    {
+        return Err(SimulationError::Occupied {
+            folder: out.to_owned(),
+        });
+    }
+    claimed.lock = Some(HeldFolder {
+        _file: file,
+        _folder: folder,
+    });
     let log = out.join("log");
     fs::create_dir_all(&log).map_err(|cause| io_error(&log, cause))?;
     Ok(claimed)
 }
 
 impl ClaimedFolder {
+    /// Refuses a folder that held, before it was claimed, what a run would write over.
+    pub(crate) fn refuse_others(&self) -> Result<(), SimulationError> {
+        let before = self.before.iter().flatten();
+        let found: Vec<String> = before
+            .filter_map(|name| name.to_str())
+            .filter(|name| WRITTEN.contains(name))
+            .map(|name| format!("`{name}`"))
+            .collect();
+        if found.is_empty() {
+            return Ok(());
+        }
+        Err(SimulationError::NotResults {
+            folder: self.out.clone(),
+            names: found.join(", "),
+        })
+    }
+
     /// True where a solver has written a log of its own, which may say why a run ended before it began.
     pub(super) fn has_solver_log(&self) -> bool {
         let Ok(logs) = fs::read_dir(self.out.join("log")) else {
@@ -89,7 +148,7 @@ impl ClaimedFolder {
     }
 
     /// Leaves what is in the folder, and gives the lock, which holds while it lives.
-    pub(crate) fn keep(mut self) -> Option<File> {
+    pub(crate) fn keep(mut self) -> Option<HeldFolder> {
         self.lock.take()
     }
 }

@@ -31,7 +31,6 @@ mod builder;
 mod error;
 mod folder;
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::boundary_value::BoundaryValue;
@@ -70,7 +69,7 @@ pub struct Simulation {
     ending: Option<Ending>,
     /// True after a failure: the parts may stand in the middle of a window.
     failed: bool,
-    _lock: Option<File>,
+    _lock: Option<folder::HeldFolder>,
 }
 
 impl Simulation {

@@ -88,6 +88,7 @@ pub fn case() -> Case {
         feeds: vec![],
         outlets: vec![],
         gas_held: false,
+        gravity_is_stated: true,
         gas_files: vec![],
         gas: gas_setup(),
         particles: vec![],

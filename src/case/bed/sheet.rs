@@ -101,7 +101,10 @@ const MEANT: [(&[&str], &str); 5] = [
         &["wx", "wy", "wz"],
         "name angular velocities `omegax`, `omegay` and `omegaz`, or leave them out",
     ),
-    (&["t", "temp"], "name it `temperature`, or leave it out"),
+    (
+        &["t", "tp", "temp"],
+        "name it `temperature`, or leave it out",
+    ),
 ];
 
 const DIAMETER: [&str; 1] = ["diameter"];
@@ -120,6 +123,83 @@ const MASS: [&str; 1] = ["mass"];
 const TYPE: [&str; 1] = ["type"];
 
 const ID: [&str; 1] = ["id"];
+
+/// Words for a column that is not read under its name, as parts of longer names too, and what to do.
+const WORDS: [(&[&str], &str); 6] = [
+    (
+        &["diameter", "diam", "dia", "durchmesser"],
+        "name it `diameter` (in m), or leave it out",
+    ),
+    (
+        &["radius", "rad"],
+        "name it `radius` (in m), or leave it out",
+    ),
+    (
+        &["temperature", "temp", "temperatur"],
+        "name it `temperature` (in K), or leave it out",
+    ),
+    (
+        &["density", "rho", "dichte"],
+        "name it `density` (in kg/m^3), or leave it out",
+    ),
+    (
+        &["velocity", "velocities", "speed"],
+        "name velocities `vx`, `vy` and `vz` (in m/s), or leave them out",
+    ),
+    (
+        &["mass", "masse"],
+        "name it `mass` (in kg), or leave it out",
+    ),
+];
+
+/// Names of components that are read, written in another way.
+const VECTORS: [(&[&str], &str); 2] = [
+    (
+        &["vx", "vy", "vz"],
+        "name velocities `vx`, `vy` and `vz`, or leave them out",
+    ),
+    (
+        &["omegax", "omegay", "omegaz"],
+        "name angular velocities `omegax`, `omegay` and `omegaz`, or leave them out",
+    ),
+];
+
+/// Parts of names that are units.
+const UNITS: [&str; 14] = [
+    "m", "mm", "cm", "um", "k", "c", "degc", "kg", "g", "m3", "mm3", "s", "ms", "m^3",
+];
+
+/// What a column that is not read is likely meant for: one of these words, with a unit or other words beside it.
+fn meant(name: &str) -> Option<&'static str> {
+    if is_read(name) {
+        return None;
+    }
+    let parts: Vec<&str> = name
+        .split(|letter: char| !letter.is_alphanumeric() && letter != '^')
+        .filter(|part| !part.is_empty())
+        .collect();
+    let worded = WORDS
+        .iter()
+        .find(|(words, _)| parts.iter().any(|part| words.contains(part)));
+    if let Some((_, meant)) = worded {
+        return Some(meant);
+    }
+    let joined = parts.concat();
+    let vector = MEANT.iter().chain(&VECTORS);
+    let mut vector = vector.filter(|(names, _)| names.contains(&joined.as_str()));
+    if let Some((_, meant)) = vector.next() {
+        return Some(meant);
+    }
+    // A single letter stands by itself, or beside a unit.
+    let [first, units @ ..] = &parts[..] else {
+        return None;
+    };
+    let alone = units.iter().all(|part| UNITS.contains(part));
+    MEANT
+        .iter()
+        .find(|(names, _)| names.contains(&name) || alone && names.contains(first))
+        .map(|(_, meant)| *meant)
+}
 
 impl Sheet {
     fn column(&self, names: &[&str]) -> Option<&[f64]> {
@@ -191,10 +271,7 @@ impl Sheet {
             if self.columns[..index].iter().any(|(other, _)| other == name) {
                 return Err((None, format!("it has two columns `{name}`; leave one out")));
             }
-            let meant = MEANT
-                .iter()
-                .find(|(names, _)| names.contains(&name.as_str()));
-            if let Some((_, meant)) = meant {
+            if let Some(meant) = meant(name) {
                 let fact = format!("its column `{name}` is not read; {meant}");
                 return Err((None, fact));
             }

@@ -27,6 +27,7 @@ const VACUUM: &str = "vacuum";
 pub(super) struct GasRead {
     pub setup: GasSetup,
     pub held: bool,
+    pub gravity_is_stated: bool,
     /// Files of its chemistry.
     pub files: Vec<PathBuf>,
     /// What the particles of a bed make of its eddies.
@@ -50,6 +51,7 @@ pub(super) fn read(
     };
     let schmidt = schmidt(&section, properties.as_ref());
     let initial = initial(&section, properties.as_ref());
+    let gravity_is_stated = section.has("gravity");
     let gravity = section.vector("gravity").unwrap_or([0.0; 3]);
     let pressure_gradient = section.vector("pressure_gradient").unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
@@ -101,6 +103,7 @@ pub(super) fn read(
     Some(GasRead {
         setup,
         held,
+        gravity_is_stated,
         files,
         bed_eddies,
     })
@@ -125,6 +128,7 @@ fn vacuum(section: &TableReader<'_>) -> Option<GasRead> {
             section.fail(key, rule, "remove it, or write another `gas.mixture`");
         }
     }
+    let gravity_is_stated = section.has("gravity");
     let gravity = section.vector("gravity").unwrap_or([0.0; 3]);
     // A vacuum stays as it is, held or not, and nothing is solved for.
     section.truth("held");
@@ -150,6 +154,7 @@ fn vacuum(section: &TableReader<'_>) -> Option<GasRead> {
     Some(GasRead {
         setup,
         held: true,
+        gravity_is_stated,
         files: Vec::new(),
         bed_eddies: LawChoice::named(&section.laws().bed_eddies, NONE, Vec::new())?,
     })

@@ -178,6 +178,7 @@ pub(super) fn case(
     let GasRead {
         setup: mut gas,
         held: gas_held,
+        gravity_is_stated,
         files: gas_files,
         bed_eddies: _,
     } = gas?;
@@ -204,6 +205,7 @@ pub(super) fn case(
         motion,
         gas,
         gas_held,
+        gravity_is_stated,
         gas_files,
         files: BTreeMap::new(),
         particles: particles?,

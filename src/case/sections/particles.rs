@@ -164,7 +164,9 @@ pub(super) fn material_of(table: &TableReader<'_>, materials: &[MaterialSpec]) -
 }
 
 pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Vec<ContactSpec> {
-    root.tables("contacts")
+    let tables = root.tables("contacts");
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    tables
         .iter()
         .filter_map(|table| {
             let between = table.texts("between");
@@ -185,8 +187,20 @@ pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Ve
                     "name two of [materials]",
                 );
             }
+            let pair = pair?;
+            let [a, b] = pair;
+            let sorted = [a.min(b), a.max(b)];
+            if pairs.contains(&sorted) {
+                let names = [a, b].map(|index| materials[index].name.as_str());
+                let rule = format!(
+                    "names \"{}\" and \"{}\", as an entry before it does",
+                    names[0], names[1]
+                );
+                table.fail("between", rule, "state each pair of materials once");
+            }
+            pairs.push(sorted);
             Some(ContactSpec {
-                between: pair?,
+                between: pair,
                 restitution,
                 friction,
                 rolling_friction,

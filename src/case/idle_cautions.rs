@@ -1,0 +1,185 @@
+//! What a case states without an effect, or leaves out with one that is likely not meant.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::motion::{Motion, WallMotion, WallShape};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::{GasPatch, ParticleSetup};
+
+use super::in_wall;
+use super::model::{Case, FeedSpec, MotionSpec};
+use super::place_error::PlaceError;
+use super::units::listed;
+
+/// Places along each side of a region that are tried.
+const PLACES: usize = 5;
+/// Share of the extent of a mesh by which a wall lies within it.
+const WITHIN: f64 = 0.02;
+
+/// Warnings about a case by itself, in a fixed order.
+pub(super) fn all(case: &Case) -> Vec<String> {
+    let mut all: Vec<String> = without_gravity(case).into_iter().collect();
+    all.extend(held_inlets(case));
+    all.extend(wall_temperatures(case));
+    all
+}
+
+/// Particles that move where gravity is not stated.
+fn without_gravity(case: &Case) -> Option<String> {
+    let mut moving = case.particles.iter();
+    let one = moving.find(|one| one.motion != MotionSpec::Frozen)?;
+    (!case.gravity_is_stated).then(|| {
+        format!(
+            "`gas.gravity` is not stated, so that `{}` do not fall: write gravity = \"0 0 -9.81 m/s^2\", or \"0 0 0 m/s^2\" if that is meant",
+            one.name
+        )
+    })
+}
+
+/// Inlets of a gas that is held.
+fn held_inlets(case: &Case) -> Option<String> {
+    let mut patches = case.gas.patches.iter();
+    let (name, _) = patches.find(|(_, patch)| matches!(patch, GasPatch::Inlet { .. }))?;
+    case.gas_held.then(|| {
+        format!(
+            "`gas.held` keeps the gas as it is at the start: the inlet `{name}` has no effect; remove one of both"
+        )
+    })
+}
+
+/// Temperatures of walls that nothing is exchanged with.
+fn wall_temperatures(case: &Case) -> Option<String> {
+    let stated = case.wall_temperatures.iter().position(Option::is_some)?;
+    let alone = !case.laws.conducts() && case.laws.radiation.is_none();
+    alone.then(|| {
+        format!(
+            "`temperature` of the wall `{}` has no effect: `laws.conduction` and `laws.radiation` are \"none\"",
+            case.walls[stated].name
+        )
+    })
+}
+
+/// Walls within the mesh, which the gas does not see.
+pub(super) fn unseen_walls(case: &Case, mesh: &Mesh) -> Option<String> {
+    if case.gas_held || case.gas.properties.is_vacuum() {
+        return None;
+    }
+    let [low, high] = mesh.bounds();
+    let edge = WITHIN * (high - low);
+    let inside = |point: Vec3| {
+        let (low, high) = (low + edge, high - edge);
+        (0..3).all(|axis| (low[axis]..=high[axis]).contains(&point[axis]))
+    };
+    let within = |shape: &WallShape| match shape {
+        WallShape::Mesh { triangles } => {
+            let mut centres = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0);
+            centres.any(inside)
+        }
+        _ => false,
+    };
+    let moves = |motion: &WallMotion| {
+        matches!(
+            motion,
+            WallMotion::Scheduled { .. }
+                | WallMotion::Oscillating { .. }
+                | WallMotion::Servo { .. }
+        )
+    };
+    let found = case
+        .walls
+        .iter()
+        .filter(|wall| within(&wall.shape) || moves(&wall.motion));
+    let names: Vec<&str> = found.map(|wall| wall.name.as_str()).collect();
+    listed(&names).map(|names| {
+        format!(
+            "the gas does not see walls within its mesh and flows through {}: they are for particles; cut them out of the mesh \
+             (`mesh.polymesh`) where the gas has to go around them",
+            names
+        )
+    })
+}
+
+/// Regions of feeds and outlets that lie beside the mesh, or of feeds in walls.
+pub(super) fn regions(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Vec<String> {
+    let [low, high] = mesh.bounds();
+    let beside = |zone: &Zone| {
+        let mut places = places(zone, 0.0);
+        !places.any(|place| (0..3).all(|axis| (low[axis]..=high[axis]).contains(&place[axis])))
+    };
+    let mut told = Vec::new();
+    for feed in &case.feeds {
+        if beside(&feed.zone) {
+            told.push(format!(
+                "the region of the feed `{}` lies beside the mesh: its particles leave as soon as they come; correct `region`",
+                feed.name
+            ));
+        } else {
+            told.extend(into_wall(case, setup, feed));
+        }
+    }
+    for outlet in case.outlets.iter().filter(|outlet| beside(&outlet.zone)) {
+        told.push(format!(
+            "the region of the outlet `{}` lies beside the mesh, where no particle comes; correct `region`",
+            outlet.name
+        ));
+    }
+    told
+}
+
+/// A feed that places particles in a wall.
+fn into_wall(case: &Case, setup: &ParticleSetup, feed: &FeedSpec) -> Option<String> {
+    if !matches!(setup.motion, Motion::Free(_)) {
+        return None;
+    }
+    let radius = 0.5 * case.particles[feed.population].sizes.largest();
+    let position: Vec<Vec3> = places(&feed.zone, radius).collect();
+    let count = position.len();
+    let fed = ParticleSetup {
+        id: (1..=count as u64).collect(),
+        population: vec![feed.population as u32; count],
+        radius: vec![radius; count],
+        density: vec![1.0; count],
+        velocity: Vec::new(),
+        angular_velocity: Vec::new(),
+        weight: Vec::new(),
+        position,
+        motion: setup.motion.clone(),
+    };
+    match in_wall::check(case, &fed) {
+        Err(PlaceError::InWall { wall, .. }) => Some(format!(
+            "the region of the feed `{}` reaches into the wall `{wall}`: particles that come there are shot out of it; keep `region` a \
+             particle's radius away from walls",
+            feed.name
+        )),
+        _ => None,
+    }
+}
+
+/// Places all over a region, for spheres of a radius in m that lie within it as far as they find room.
+fn places(zone: &Zone, radius: f64) -> impl Iterator<Item = Vec3> {
+    let (low, high) = match *zone {
+        Zone::Box { low, high } => (low, high),
+        Zone::Cylinder { from, to, radius } => {
+            let axis = (to - from).normalize();
+            let across = axis.map(|one| radius * (1.0 - one * one).max(0.0).sqrt());
+            (from.inf(&to) - across, from.sup(&to) + across)
+        }
+    };
+    let between = move |axis: usize, step: usize| {
+        let (from, to) = (low[axis] + radius, high[axis] - radius);
+        match from < to {
+            true => from + (to - from) * step as f64 / (PLACES - 1) as f64,
+            false => 0.5 * (low[axis] + high[axis]),
+        }
+    };
+    let zone = zone.clone();
+    let all = (0..PLACES.pow(3)).map(move |number| {
+        let steps = [
+            number % PLACES,
+            number / PLACES % PLACES,
+            number / PLACES / PLACES,
+        ];
+        Vec3::from([0, 1, 2].map(|axis| between(axis, steps[axis])))
+    });
+    all.filter(move |place| zone.holds(*place))
+}
