@@ -172,7 +172,7 @@ fn places(zone: &Zone, radius: f64) -> impl Iterator<Item = Vec3> {
             false => 0.5 * (low[axis] + high[axis]),
         }
     };
-    let zone = zone.clone();
+    let zone = *zone;
     let all = (0..PLACES.pow(3)).map(move |number| {
         let steps = [
             number % PLACES,
