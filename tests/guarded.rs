@@ -229,7 +229,35 @@ fn what_is_stated_without_an_effect_and_what_is_left_out_is_warned_of() {
         "has no effect: `laws.conduction`"
     ));
 
+    let plate = read(&good("moving"), &[])
+        .unwrap()
+        .walls
+        .last()
+        .unwrap()
+        .name
+        .clone();
+    assert_eq!(plate, "plate");
     let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(good("moving")).unwrap();
+    let floor = "plane = { point = \"0 0 1 mm\", normal = \"0 0 2\" }";
+    let more = format!(
+        "[materials.steel]\ndensity = \"7800 kg/m^3\"\nheat_capacity = \"500 J/kg/K\"\n\n[[walls]]\nname = \"again\"\nmaterial = \"glass\"\n{floor}\n\n[motion]"
+    );
+    let case = folder.path().join("moving.toml");
+    fs::write(&case, text.replace("[motion]", &more)).unwrap();
+    fs::copy(
+        good("moving").with_file_name("plate.stl"),
+        folder.path().join("plate.stl"),
+    )
+    .unwrap();
+    let found = ValidCase::open(&case, &[]).unwrap().case.warnings;
+    for words in [
+        "no wall are of the material `steel`",
+        "the walls `floor` and `again` are one surface",
+    ] {
+        assert!(found.iter().any(|one| one.contains(words)), "{found:?}");
+    }
+
     let text = fs::read_to_string(shipped("settled-bed")).unwrap();
     let without: String = text
         .lines()

@@ -21,7 +21,37 @@ pub(super) fn all(case: &Case) -> Vec<String> {
     let mut all: Vec<String> = without_gravity(case).into_iter().collect();
     all.extend(held_inlets(case));
     all.extend(wall_temperatures(case));
+    all.extend(unused_materials(case));
+    all.extend(doubled_walls(case));
     all
+}
+
+/// Materials that nothing is made of.
+fn unused_materials(case: &Case) -> Option<String> {
+    let used = |index: usize| {
+        case.particles.iter().any(|one| one.material == index)
+            || case.walls.iter().any(|wall| wall.material == index)
+    };
+    let unused = case.materials.iter().enumerate();
+    let unused: Vec<&str> = unused
+        .filter(|(index, _)| !used(*index))
+        .map(|(_, material)| material.name.as_str())
+        .collect();
+    listed(&unused).map(|names| format!("no particles and no wall are of the material {names}"))
+}
+
+/// Walls in one place, whose contacts count twice.
+fn doubled_walls(case: &Case) -> Vec<String> {
+    let walls = case.walls.iter().enumerate();
+    let twice = walls.filter_map(|(index, wall)| {
+        let mut before = case.walls[..index].iter();
+        let other = before.find(|other| other.shape == wall.shape)?;
+        Some(format!(
+            "the walls `{}` and `{}` are one surface: what touches it feels both; leave one out",
+            other.name, wall.name
+        ))
+    });
+    twice.collect()
 }
 
 /// Particles that move where gravity is not stated.

@@ -22,26 +22,29 @@ use crate::results::{SUMMARY, Summary};
 /// A file that every run makes and holds locked while it lives.
 const LOCK: &str = "lock";
 
-/// What runs of beds and of plants write into their folder, and remove.
-const WRITTEN: [&str; 18] = [
-    "case.toml",
+/// What runs of beds and of plants compute, in their folder.
+const COMPUTED: [&str; 7] = [
     "checkpoint",
     "checkpoint.before",
-    "checkpoint.new",
-    "command.json",
     "distributions.csv",
+    "results.h5",
+    "series.csv",
+    "streams.csv",
+    "voids.csv",
+];
+
+/// What else they write there, or remove; one that failed before it began leaves some of it.
+const WRITTEN: [&str; 10] = [
+    "case.toml",
+    "checkpoint.new",
     "gas",
     "gas.pvd",
     "particles",
     "particles.pvd",
     "probes",
     "report.html",
-    "results.h5",
     "results.h5.new",
-    "series.csv",
     "status.json",
-    "streams.csv",
-    "voids.csv",
 ];
 
 /// Name of the run's own log in `log/`.
@@ -122,10 +125,17 @@ pub(crate) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
 impl ClaimedFolder {
     /// Refuses a folder that held, before it was claimed, what a run would write over.
     pub(crate) fn refuse_others(&self) -> Result<(), SimulationError> {
-        let before = self.before.iter().flatten();
-        let found: Vec<String> = before
-            .filter_map(|name| name.to_str())
-            .filter(|name| WRITTEN.contains(name))
+        let before = || {
+            self.before
+                .iter()
+                .flatten()
+                .filter_map(|name| name.to_str())
+        };
+        let of_a_run = before().any(|name| name == LOCK);
+        let in_the_way =
+            |name: &&str| COMPUTED.contains(name) || !of_a_run && WRITTEN.contains(name);
+        let found: Vec<String> = before()
+            .filter(in_the_way)
             .map(|name| format!("`{name}`"))
             .collect();
         if found.is_empty() {
