@@ -93,6 +93,53 @@ fn files_of_the_users_own_are_not_written_over() {
     }
 }
 
+/// Every entry that a finished run leaves, alone in a folder, keeps another run out of it.
+fn refuses_each_entry(case: &Path, set: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let first = folder.path().join("first");
+    let first_run = program::command(case, &first, &[], set).output().unwrap();
+    // Short of its end, quantities may be outside of their bands.
+    assert!([Some(0), Some(5)].contains(&first_run.status.code()));
+    let report = calcine(&["report", "first"], folder.path());
+    assert!(report.status.success());
+    // The lock and the log are added to, and of the summary results are told as such.
+    let others = ["lock", "log", "summary.json"];
+    let entries = fs::read_dir(&first).unwrap().map(|one| one.unwrap().path());
+    let names = entries.map(|path| path.file_name().unwrap().to_str().unwrap().to_owned());
+    let names: Vec<String> = names
+        .filter(|name| !others.contains(&name.as_str()))
+        .collect();
+    assert!(names.len() > 5, "{names:?}");
+    for name in names {
+        let mine = folder.path().join("mine");
+        fs::create_dir(&mine).unwrap();
+        let entry = mine.join(&name);
+        match first.join(&name).is_dir() {
+            true => fs::create_dir(&entry).unwrap(),
+            false => fs::write(&entry, "mine").unwrap(),
+        }
+        let output = program::command(case, &mine, &[], set).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            told.contains(&format!("holds `{name}`, which")),
+            "{name}: {told}"
+        );
+        assert_eq!(fs::read_dir(&mine).unwrap().count(), 1, "{name}");
+        fs::remove_dir_all(&mine).unwrap();
+    }
+}
+
+#[test]
+fn whatever_a_run_of_a_bed_writes_is_not_written_over() {
+    let set = ["time.end=0.05 s", "time.checkpoint.every=0.02 s"];
+    refuses_each_entry(&good("moving"), &set);
+}
+
+#[test]
+fn whatever_a_run_of_a_plant_writes_is_not_written_over() {
+    refuses_each_entry(&shipped("granulation-plant"), &["time.end=60 s"]);
+}
+
 #[test]
 fn a_run_whose_lock_was_removed_is_not_joined_by_another() {
     let folder = tempfile::tempdir().unwrap();
@@ -150,6 +197,10 @@ fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
         ("t [C]", "name it `temperature`"),
         ("v_x", "name velocities `vx`"),
         ("velocity", "name velocities `vx`"),
+        ("velocity_x [m/s]", "name velocities `vx`"),
+        ("angular velocity", "name angular velocities `omegax`"),
+        ("initial particle mass [g]", "name it `mass`"),
+        ("dp", "name it `diameter`"),
         ("rho [kg/m3]", "name it `density`"),
     ] {
         let rows = format!("x,y,z,{name}\n0.005,0.005,0.29,1\n");
@@ -159,7 +210,19 @@ fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
         assert_eq!(checked.status.code(), Some(2), "{name}: {told}");
         assert!(told.contains(meant), "{name}: {told}");
     }
-    for name in ["pressure", "c_stress[1]", "moisture", "material", "number"] {
+    for name in [
+        "pressure",
+        "c_stress[1]",
+        "moisture",
+        "material",
+        "number",
+        "mass_fraction_H2O",
+        "surface_temperature",
+        "velocity_Magnitude",
+        "gas_temperature",
+        "d50",
+        "p",
+    ] {
         let rows = format!("x,y,z,{name}\n0.005,0.005,0.29,1\n");
         fs::write(folder.path().join("bead.csv"), rows).unwrap();
         let checked = calcine(&["check", "moving.toml"], folder.path());
@@ -180,7 +243,28 @@ fn a_feed_without_room_is_warned_of() {
     let met = run("met", "feeds[0].mass_rate=\"1 kg/h\"");
     assert!(!met.contains_key("feeds_wait"), "{met:?}");
     let huge = run("huge", "feeds[0].mass_rate=\"200 kg/s\"");
+    // Feeds stand while the bed is held.
+    let held = run("held", "motion.held=[[\"0.5 ms\", \"20 ms\"]]");
+    assert!(!held.contains_key("feeds_wait"), "{held:?}");
     assert!(huge["feeds_wait"].worst > 0.5, "{huge:?}");
+}
+
+/// Round-off, most of what moves where all have one temperature, is no open balance.
+#[test]
+fn a_bed_at_the_temperature_of_a_gas_that_is_held_closes() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let set = [
+        "time.end=1 s",
+        "gas.held=true",
+        "gas.initial.temperature=\"300 K\"",
+        "particles[0].temperature=\"300 K\"",
+    ];
+    program::run(&shipped("heated-bed"), &out, &[], &set);
+    let summary = Summary::read(&out).unwrap();
+    let energy = &summary.ledger.lines["energy"];
+    assert!(energy.relative_error > 1e-3, "{energy:?}");
+    assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
 }
 
 #[test]
@@ -200,6 +284,16 @@ fn regions_beside_the_mesh_and_in_walls_are_warned_of() {
         "feed `charge` reaches into the wall `container.x-`"
     ));
     assert!(!words("0 0 250", "20 20 280", "feed `charge`"));
+    // A region as wide as its drum holds spheres that touch the wall and none in it.
+    let round = |radius: &str| {
+        let region = format!(
+            r#"feeds[1].region={{ cylinder = {{ from = "10 10 200 mm", to = "10 10 220 mm", radius = "{radius}" }} }}"#
+        );
+        let set = [&region, r#"walls[2].cylinder.radius="9 mm""#];
+        warned("moving", &set, "feed `second` reaches into the wall `drum`")
+    };
+    assert!(!round("9 mm"));
+    assert!(round("9.5 mm"));
     let outlet = r#"outlets[0].region={ box = { from = "0 0 -80 mm", to = "20 20 -60 mm" } }"#;
     let outlets = read(&good("moving"), &[]).unwrap().outlets;
     let beside = format!("outlet `{}` lies beside the mesh", outlets[0].name);

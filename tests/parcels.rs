@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use calcine::results::Summary;
+use calcine::results::read::Series;
 
 use crate::support::{killed, program};
 
@@ -15,20 +16,12 @@ fn the_pressure_drop_of_a_bed_that_floats_is_its_weight_less_the_little_that_the
     let out = folder.path().join("out");
     let slow = r#"gas.patch.bottom.inlet.superficial_velocity="0.25 m/s""#;
     program::run(&program::shipped("parcel-bed"), &out, &[], &[slow]);
-    let mut series = csv::Reader::from_path(out.join("series.csv")).unwrap();
-    let headers = series.headers().unwrap().clone();
-    let place = |name: &str| {
-        headers
-            .iter()
-            .position(|one| one.starts_with(name))
-            .unwrap()
-    };
-    let (time, drop) = (place("process_time"), place("quantities.pressure_drop"));
-    let number = |row: &csv::StringRecord, place: usize| row[place].parse::<f64>().unwrap();
-    let rows = series.records().map(Result::unwrap);
-    let drops: Vec<f64> = rows
-        .filter(|row| number(row, time) > 0.3)
-        .map(|row| number(&row, drop))
+    let series = Series::read(&out).unwrap();
+    let times = series.column("process_time");
+    let all = times.iter().zip(series.column("quantities.pressure_drop"));
+    let drops: Vec<f64> = all
+        .filter(|(time, _)| **time > 0.3)
+        .map(|(_, drop)| *drop)
         .collect();
     let mean = drops.iter().sum::<f64>() / drops.len() as f64;
     // 18 x 6 x 20 parcels of 43 beads over 54 x 18 mm, less what they displace; the gas is 180 mm high.
@@ -46,16 +39,12 @@ fn slope(folder: &std::path::Path, name: &str, set: &[&str]) -> f64 {
     let summary = Summary::read(&out).unwrap();
     let momentum = &summary.ledger.lines["particle_momentum"];
     assert!(momentum.relative_error < 1e-12, "{momentum:?}");
-    let mut series = csv::Reader::from_path(out.join("series.csv")).unwrap();
-    let headers = series.headers().unwrap().clone();
-    let angle = headers
-        .iter()
-        .position(|one| one.starts_with("quantities.surface_angle"))
-        .unwrap();
-    let rows = series.records().map(Result::unwrap);
-    let late: Vec<f64> = rows
-        .filter(|row| row[0].parse::<f64>().unwrap() > 0.4)
-        .map(|row| row[angle].parse::<f64>().unwrap().to_degrees())
+    let series = Series::read(&out).unwrap();
+    let times = series.column("process_time");
+    let all = times.iter().zip(series.column("quantities.surface_angle"));
+    let late: Vec<f64> = all
+        .filter(|(time, _)| **time > 0.4)
+        .map(|(_, angle)| angle.to_degrees())
         .collect();
     late.iter().sum::<f64>() / late.len() as f64
 }

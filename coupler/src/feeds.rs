@@ -2,6 +2,7 @@
 //! that every backend gets the same.
 
 use std::f64::consts::PI;
+use std::iter;
 
 use calcine_physics::{Vec3, sphere};
 
@@ -95,6 +96,15 @@ pub struct WindowSpan {
     pub acceleration: f64,
 }
 
+impl Feed {
+    /// Radius in m of a particle, by how many come before it, and the mass in kg of all that it stands for.
+    fn particle(&self, number: u64) -> Result<(f64, f64), PackingError> {
+        let diameters = self.sizes.sample(1, mixed(self.seed, number, 0))?;
+        let radius = 0.5 * diameters.first().copied().unwrap_or(0.0);
+        Ok((radius, self.weight * sphere::mass(radius, self.density)))
+    }
+}
+
 impl FeedsAndOutlets {
     /// Feeds and outlets of a run whose first particles have ids below `next_id`.
     pub fn new(feeds: Vec<Feed>, outlets: Vec<Outlet>, up: Vec3, next_id: u64) -> Self {
@@ -126,6 +136,19 @@ impl FeedsAndOutlets {
     /// True where nothing ever comes or goes.
     pub fn is_none(&self) -> bool {
         self.feeds.is_empty() && self.outlets.is_empty()
+    }
+
+    /// Mass in kg that is due and found no room, of feeds where more than one particle waits.
+    pub fn waiting(&self) -> f64 {
+        let owed = |index: usize, feed: &Feed| {
+            let owed = self.due[0][index];
+            let next = feed.particle(self.drawn[index]);
+            // The next one is due with half of its mass, the one after it with one and a half.
+            let several = next.is_ok_and(|(_, mass)| mass > 0.0 && owed >= 1.5 * mass);
+            if several { owed } else { 0.0 }
+        };
+        let feeds = self.feeds.iter().enumerate();
+        feeds.map(|(index, feed)| owed(index, feed)).sum()
     }
 
     /// Decides what goes and comes before a window.
@@ -190,9 +213,7 @@ impl FeedsAndOutlets {
             self.due[0][index] += feed.rate * moment.span;
             loop {
                 let number = self.drawn[index];
-                let diameters = feed.sizes.sample(1, mixed(feed.seed, number, 0))?;
-                let radius = 0.5 * diameters.first().copied().unwrap_or(0.0);
-                let mass = feed.weight * sphere::mass(radius, feed.density);
+                let (radius, mass) = feed.particle(number)?;
                 if !(mass > 0.0 && self.due[0][index] >= 0.5 * mass) {
                     break;
                 }
@@ -282,6 +303,12 @@ impl FeedsAndOutlets {
 /// A seed of its own for each particle and window.
 fn mixed(seed: u64, number: u64, window: u64) -> u64 {
     seed ^ number.wrapping_mul(0xd605_1ba1_9ee3_4e1d) ^ window.wrapping_mul(0xa076_1d64_78bd_642f)
+}
+
+/// Centres in m of spheres of a radius in m as a feed would place them in its zone, whatever else is there.
+pub fn places(zone: Zone, radius: f64, seed: u64) -> impl Iterator<Item = Vec3> {
+    let mut random = SplitMix64(seed);
+    iter::repeat_with(move || within(&zone, radius, &mut random))
 }
 
 /// A centre in a zone (m) such that a sphere about it lies within, evenly distributed; where the sphere

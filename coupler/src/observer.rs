@@ -90,6 +90,8 @@ pub struct CommittedState<'a> {
     pub reservoir_heat: &'a [f64],
     /// The ledger so far.
     pub ledger: &'a Ledger,
+    /// Mass in kg that feeds should have brought and that found no room.
+    pub waiting: f64,
     /// The estimated error of the window's step; `None` where too few windows have passed for one.
     pub step_error: Option<&'a StepError>,
     /// Largest Courant number of the gas at the end of the window, over its motion time.

@@ -1,5 +1,6 @@
 //! What a case states without an effect, or leaves out with one that is likely not meant.
 
+use calcine_coupler::feeds::places;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{Motion, WallMotion, WallShape};
@@ -11,8 +12,8 @@ use super::model::{Case, FeedSpec, MotionSpec};
 use super::place_error::PlaceError;
 use super::units::listed;
 
-/// Places along each side of a region that are tried.
-const PLACES: usize = 5;
+/// Places in the region of a feed that are tried.
+const PLACES: usize = 1000;
 /// Share of the extent of a mesh by which a wall lies within it.
 const WITHIN: f64 = 0.02;
 
@@ -133,8 +134,8 @@ pub(super) fn unseen_walls(case: &Case, mesh: &Mesh) -> Option<String> {
 pub(super) fn regions(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Vec<String> {
     let [low, high] = mesh.bounds();
     let beside = |zone: &Zone| {
-        let mut places = places(zone, 0.0);
-        !places.any(|place| (0..3).all(|axis| (low[axis]..=high[axis]).contains(&place[axis])))
+        let [from, to] = zone.bounds();
+        (0..3).any(|axis| to[axis] < low[axis] || from[axis] > high[axis])
     };
     let mut told = Vec::new();
     for feed in &case.feeds {
@@ -162,7 +163,7 @@ fn into_wall(case: &Case, setup: &ParticleSetup, feed: &FeedSpec) -> Option<Stri
         return None;
     }
     let radius = 0.5 * case.particles[feed.population].sizes.largest();
-    let position: Vec<Vec3> = places(&feed.zone, radius).collect();
+    let position: Vec<Vec3> = places(feed.zone, radius, feed.seed).take(PLACES).collect();
     let count = position.len();
     let fed = ParticleSetup {
         id: (1..=count as u64).collect(),
@@ -183,33 +184,4 @@ fn into_wall(case: &Case, setup: &ParticleSetup, feed: &FeedSpec) -> Option<Stri
         )),
         _ => None,
     }
-}
-
-/// Places all over a region, for spheres of a radius in m that lie within it as far as they find room.
-fn places(zone: &Zone, radius: f64) -> impl Iterator<Item = Vec3> {
-    let (low, high) = match *zone {
-        Zone::Box { low, high } => (low, high),
-        Zone::Cylinder { from, to, radius } => {
-            let axis = (to - from).normalize();
-            let across = axis.map(|one| radius * (1.0 - one * one).max(0.0).sqrt());
-            (from.inf(&to) - across, from.sup(&to) + across)
-        }
-    };
-    let between = move |axis: usize, step: usize| {
-        let (from, to) = (low[axis] + radius, high[axis] - radius);
-        match from < to {
-            true => from + (to - from) * step as f64 / (PLACES - 1) as f64,
-            false => 0.5 * (low[axis] + high[axis]),
-        }
-    };
-    let zone = *zone;
-    let all = (0..PLACES.pow(3)).map(move |number| {
-        let steps = [
-            number % PLACES,
-            number / PLACES % PLACES,
-            number / PLACES / PLACES,
-        ];
-        Vec3::from([0, 1, 2].map(|axis| between(axis, steps[axis])))
-    });
-    all.filter(move |place| zone.holds(*place))
 }

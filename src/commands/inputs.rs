@@ -10,6 +10,11 @@ use crate::progress::preparing;
 pub(super) use crate::simulation::results_folder;
 use crate::valid::ValidCase;
 
+/// True of a folder that holds anything.
+pub(super) fn holds_files(folder: &Path) -> bool {
+    std::fs::read_dir(folder).is_ok_and(|mut files| files.next().is_some())
+}
+
 /// Refuses to write over a file that does not begin as what is to be written does.
 pub(super) fn own_or_new(path: &Path, begins: char, option: &str) -> Result<(), Failure> {
     let Ok(text) = std::fs::read(path) else {

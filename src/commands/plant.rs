@@ -9,6 +9,7 @@ use calcine_wire::SolverNetwork;
 use super::console::say;
 use super::continuation::{Recorded, begin_again};
 use super::failure::Failure;
+use super::inputs::holds_files;
 use super::shell::word;
 use super::signals::SignalThread;
 use super::tuning_line::Tuning;
@@ -63,14 +64,17 @@ fn code(summary: &PlantSummary) -> u8 {
 struct Begin<'a> {
     resume: bool,
     from: Option<&'a Path>,
+    command: Option<String>,
+    tuned: bool,
     stop_after: Option<std::time::Duration>,
 }
 
 impl Begin<'_> {
-    /// At its start, or with what is there.
-    fn again(resume: bool) -> Self {
+    /// The last of a tuning, at its start or with what is there.
+    fn of_tuning(resume: bool) -> Self {
         Self {
             resume,
+            tuned: true,
             ..Self::default()
         }
     }
@@ -90,6 +94,8 @@ fn into_folder(
         out,
         resume: begin.resume,
         from: begin.from,
+        command: begin.command,
+        tuned: begin.tuned,
         progress: !quiet,
         interrupts,
     };
@@ -142,17 +148,12 @@ pub(super) fn run(
         options,
     });
     let go_on = format!("`calcine run --resume {}` goes on", word(out.as_os_str()));
-    // Before the run: a kill leaves what `--resume` needs. The folder that is refused below stays as it is.
-    let fresh = !out.join(crate::results::SUMMARY).exists();
-    if let Some(recorded) = recorded.filter(|_| fresh) {
-        std::fs::create_dir_all(&out)
-            .map_err(|cause| Failure::unwritable(&out, "--out", &cause))?;
-        recorded.write(&out)?;
-    }
     let begin = Begin {
+        command: recorded.as_ref().and_then(Recorded::json),
         resume: arguments.resume.is_some(),
         from: arguments.from.as_deref(),
         stop_after: arguments.stop_after,
+        tuned: false,
     };
     let (code, summary) = into_folder(&case, &out, begin, arguments.quiet, &go_on)?;
     if let Some(summary) = summary {
@@ -219,7 +220,7 @@ pub(super) fn tune(line: &Tuning<'_>) -> Result<u8, Failure> {
     let tuned = read(case_file, &[set, &best].concat())?;
     // The run with what was found may have begun before.
     let begun = out.join(crate::results::SUMMARY).exists();
-    let (code, summary) = into_folder(&tuned, &out, Begin::again(begun), quiet, &go_on)?;
+    let (code, summary) = into_folder(&tuned, &out, Begin::of_tuning(begun), quiet, &go_on)?;
     if code == exit::CHECKPOINTED {
         return Ok(code);
     }
@@ -241,10 +242,13 @@ fn tuned_before(own: &str, out: &Path, resume: bool) -> Result<Option<u8>, Failu
     let place = out.display();
     let is_run = out.join(crate::results::SUMMARY).exists();
     match (resume, crate::plant::trials::trials_of(out)) {
-        (false, None) if !is_run => Ok(None),
-        (false, None) => refused(format_args!(
+        (false, None) if is_run => refused(format_args!(
             "{place} holds results: name another folder with `--out`"
         )),
+        (false, None) if holds_files(out) => refused(format_args!(
+            "{place} is not empty and holds no tuning: name another folder with `--out`"
+        )),
+        (false, None) => Ok(None),
         (false, Some(_)) => refused(format_args!(
             "{place} holds another tuning: write elsewhere with `--out DIR`, go on with it by `--resume`, or remove the folder"
         )),
@@ -343,7 +347,7 @@ pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
         read(&arguments.case, settings)?;
     }
     if let Some(path) = &arguments.table {
-        sweep::writable(path).map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
+        sweep::table_is_free(path)?;
     }
     let go_on = begin_again("sweep", &out);
     let mut head = names;

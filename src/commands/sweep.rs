@@ -105,8 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let combinations = combine(&axes);
     // Every case and folder is checked before the first one runs, and that the table can be written after the last one.
     if let Some(path) = &arguments.table {
-        own_or_new(path, '|', "--table")?;
-        writable(path).map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
+        table_is_free(path)?;
     }
     for settings in &combinations {
         read_case(&arguments.case, settings)?;
@@ -140,17 +139,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     })
 }
 
-/// Whether a file can be written; it stays as it is, or absent.
-pub(super) fn writable(path: &Path) -> std::io::Result<()> {
+/// Refuses a file for the table that cannot be written, or that holds something else; it stays as it is, or absent.
+pub(super) fn table_is_free(path: &Path) -> Result<(), Failure> {
+    own_or_new(path, '|', "--table")?;
     let absent = !path.exists();
-    std::fs::File::options()
+    let opened = std::fs::File::options()
         .append(true)
         .create(true)
-        .open(path)?;
-    match absent {
+        .open(path);
+    let tried = opened.and_then(|_| match absent {
         true => std::fs::remove_file(path),
         false => Ok(()),
-    }
+    });
+    tried.map_err(|cause| Failure::unwritable(path, "--table", &cause))
 }
 
 fn one(

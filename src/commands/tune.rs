@@ -12,6 +12,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use super::console::say;
 use super::continuation::Recorded;
 use super::failure::Failure;
+use super::inputs::holds_files;
 use super::shell::word;
 use super::tuning_line::Tuning;
 use crate::case::units::short;
@@ -169,9 +170,7 @@ fn before(case: &TuningCase, out: &Path, resume: bool) -> Result<Option<u8>, Fai
     let place = out.display();
     let refused = |message: String| Err(Failure::new(exit::CASE, message));
     let Some((hash, verdict)) = state(out) else {
-        let used =
-            out.is_dir() && std::fs::read_dir(out).is_ok_and(|mut files| files.next().is_some());
-        return match (resume, used) {
+        return match (resume, holds_files(out)) {
             (true, _) => refused(format!(
                 "{place} holds no tuning that could go on: leave `--resume` out"
             )),

@@ -10,10 +10,9 @@ use calcine_flowsheet::{BedCharge, BedExchange, CoupledBed, PlantError, StreamLa
 use super::collisions::CollisionCount;
 use crate::case::plant::{PlantBedSpec, PlantCase};
 use crate::error_chain::chain;
+use crate::results::files::BEDS;
 use crate::simulation::{Simulation, SimulationError};
 
-/// Folder of the results of beds in those of their plant.
-pub(super) const BEDS: &str = "beds";
 /// Share of what a bed holds that its particles may gain or lose otherwise than by feeds and outlets.
 const SAME: f64 = 1e-9;
 

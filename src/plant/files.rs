@@ -8,15 +8,10 @@ use calcine_flowsheet::{Plant, PlantRun};
 
 use super::measure::{Column, field, places, state};
 use crate::case::plant::{PlantField, PlantPlace};
+use crate::results::ResultsError;
+use crate::results::files::{self, DISTRIBUTIONS, SERIES, STREAMS};
 use crate::results::sheet::{line, number, rows};
-use crate::results::{ResultsError, files};
 
-/// Name of the series.
-pub(super) const SERIES: &str = "series.csv";
-/// Name of the distributions over time.
-pub(super) const DISTRIBUTIONS: &str = "distributions.csv";
-/// Name of the table of streams and units at the end.
-pub(super) const STREAMS: &str = "streams.csv";
 /// First column of every table over time.
 const TIME: &str = "time_s";
 

@@ -13,8 +13,7 @@ use super::bed::{self, BedOfPlant, PlantBed, SharedBed};
 use super::checkpoint::{PlantCheckpoint, Written};
 use super::error::PlantRunError;
 use super::files::{
-    DISTRIBUTIONS, SERIES, Table, TimeTable, distribution_head, distribution_rows, series_head,
-    write_streams,
+    Table, TimeTable, distribution_head, distribution_rows, series_head, write_streams,
 };
 use super::measure::{Column, columns, row};
 use super::progress::PlantProgress;
@@ -22,6 +21,7 @@ use super::quantities::{Measured, results, verdict};
 use super::summary::{KIND, PlantLedgerSummary, PlantSummary};
 use super::{steady, store};
 use crate::case::plant::PlantCase;
+use crate::results::files::{DISTRIBUTIONS, SERIES};
 use crate::results::sheet::number;
 use crate::results::summary::{CaseName, RunFailure};
 use crate::results::{CASE, CaseIdentity, ResultsError, SUMMARY, Verdict, files, kind, same_case};
@@ -35,6 +35,10 @@ pub struct PlantStart<'a> {
     pub resume: bool,
     /// Results folder of another run whose last state it begins from.
     pub from: Option<&'a Path>,
+    /// The command by which it is resumed, kept in the folder where that is new.
+    pub command: Option<String>,
+    /// It is the last of a tuning, whose folder this is.
+    pub tuned: bool,
     /// Shows a progress bar.
     pub progress: bool,
     /// One leaves a checkpoint after the row of the series that is computed.
@@ -92,9 +96,11 @@ pub fn run_plant(case: &PlantCase, start: &PlantStart<'_>) -> Result<PlantEnding
     if let Some(summary) = occupied(out, case, start.resume)? {
         return Ok(PlantEnding::Complete(Box::new(summary)));
     }
-    let claimed = claim(out)?;
-    if !start.resume && !out.join(SUMMARY).exists() {
-        claimed.refuse_others()?;
+    let fresh = !out.join(SUMMARY).exists();
+    let claimed = claim(out, start.resume || start.tuned)?;
+    // Before the run: a kill leaves what `--resume` needs.
+    if let Some(command) = start.command.as_ref().filter(|_| fresh) {
+        files::replace(&out.join(files::COMMAND), command.as_bytes())?;
     }
     let mut driven = begin(case, start)?;
     let _lock = claimed.keep();
@@ -162,16 +168,16 @@ fn occupied(
             time: summary.time_s,
         }));
     }
-    same_case(out, &summary.case.hash, identity(case, &BTreeMap::new()))?;
+    same_case(out, &summary.case.hash, identity(case))?;
     Ok(summary.is_complete().then_some(summary))
 }
 
 /// The case of a plant, of which no files are kept.
-fn identity<'a>(case: &'a PlantCase, files: &'a BTreeMap<String, String>) -> CaseIdentity<'a> {
+fn identity(case: &PlantCase) -> CaseIdentity<'_> {
     CaseIdentity {
         effective: &case.effective,
         hash: &case.hash,
-        files,
+        files: None,
     }
 }
 
@@ -185,7 +191,7 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
         false => None,
     };
     if let Some(saved) = saved {
-        same_case(out, &saved.case_hash, identity(case, &BTreeMap::new()))?;
+        same_case(out, &saved.case_hash, identity(case))?;
         let mut run = PlantRun::new(plant, integrator, tolerance)?;
         let series = Table::resume(out, SERIES, saved.series)?;
         let distributions = Table::resume(out, DISTRIBUTIONS, saved.distributions)?;

@@ -6,11 +6,9 @@ use calcine_flowsheet::Derivatives;
 
 use super::summary::PlantSensitivity;
 use crate::case::plant::PlantTuningSpec;
+use crate::results::ResultsError;
+use crate::results::files::{self, SENSITIVITIES};
 use crate::results::sheet::{line, number};
-use crate::results::{ResultsError, files};
-
-/// Table of what was measured, what the plant does, and how that depends on the parameters.
-pub(super) const SENSITIVITIES: &str = "sensitivities.csv";
 
 /// One number that is compared or told.
 pub(super) struct Observed {

@@ -24,7 +24,7 @@ use crate::results::summary::{QuantityResult, SolverSummary};
 use crate::results::{CASE, ResultsError, Summary, files};
 
 /// Name of the page in a result directory.
-pub const REPORT: &str = "report.html";
+pub use crate::results::files::REPORT;
 /// Up to so many particles are named in the legend of their plot.
 const NAMED_PARTICLES: usize = 20;
 

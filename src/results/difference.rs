@@ -18,8 +18,8 @@ pub(crate) struct CaseIdentity<'a> {
     pub(crate) effective: &'a str,
     /// Its hash.
     pub(crate) hash: &'a str,
-    /// The hashes of the files that it names.
-    pub(crate) files: &'a BTreeMap<String, String>,
+    /// The hashes of the files that it names; `None` of a plant, of which none are kept.
+    pub(crate) files: Option<&'a BTreeMap<String, String>>,
 }
 
 impl<'a> CaseIdentity<'a> {
@@ -28,7 +28,7 @@ impl<'a> CaseIdentity<'a> {
         Self {
             effective: &case.effective,
             hash: &case.hash,
-            files: &case.files,
+            files: Some(&case.files),
         }
     }
 }
@@ -58,6 +58,8 @@ pub(crate) fn differences(results: &Path, stored: &str, case: CaseIdentity<'_>) 
         files,
     } = case;
     let mut differ = keys(results, effective);
+    let none = BTreeMap::new();
+    let files = files.unwrap_or(&none);
     let there = Summary::read(results).map(|summary| summary.case.files);
     let there = there.unwrap_or_default();
     for name in there

@@ -16,15 +16,62 @@ pub const COMPARISON: &str = "compare.json";
 pub const STATUS: &str = "status.json";
 /// Name of the time series.
 pub const SERIES: &str = "series.csv";
+/// Name of the table of void fractions.
+pub const VOIDS: &str = "voids.csv";
 /// Name of the HDF5 file.
 pub const STORE: &str = "results.h5";
 /// Name of the file with the command of the run, from which it is resumed.
 pub const COMMAND: &str = "command.json";
+/// Name of the report, alone in one file.
+pub const REPORT: &str = "report.html";
 /// Name of the effective case, `--set` applied.
 pub const CASE: &str = "case.toml";
 
 /// Name of the HDF5 file while it is made anew.
 pub(super) const DRAFT: &str = "results.h5.new";
+
+/// Collection of the snapshots of the gas.
+pub(super) const GAS: &str = "gas.pvd";
+/// Collection of the snapshots of the particles.
+pub(super) const PARTICLES: &str = "particles.pvd";
+/// Folders of the snapshots of the gas, of the particles and of the probes.
+pub(super) const SNAPSHOTS: [&str; 3] = ["gas", "particles", "probes"];
+
+/// Name of the table of a plant's streams and units at the end.
+pub(crate) const STREAMS: &str = "streams.csv";
+/// Name of the distributions of a plant over time.
+pub(crate) const DISTRIBUTIONS: &str = "distributions.csv";
+/// Name of the table of what was measured of a plant, and how that depends on what is tuned.
+pub(crate) const SENSITIVITIES: &str = "sensitivities.csv";
+/// Folder of the results of beds in those of their plant.
+pub(crate) const BEDS: &str = "beds";
+
+/// End of the name of a file that is not whole yet.
+const UNFINISHED: &str = ".new";
+
+/// True of what runs of beds and of plants compute in their folder.
+pub(crate) fn is_computed(name: &str) -> bool {
+    let own = [
+        BEDS,
+        DISTRIBUTIONS,
+        SENSITIVITIES,
+        SERIES,
+        STORE,
+        STREAMS,
+        VOIDS,
+    ];
+    // The last checkpoint, the one before it and others by their endings.
+    own.contains(&name) || name.split('.').next() == Some("checkpoint")
+}
+
+/// True of what else they write there or remove; a run that failed before it began leaves some of it.
+pub(crate) fn is_written(name: &str) -> bool {
+    let name = name.strip_suffix(UNFINISHED).unwrap_or(name);
+    let own = [
+        CASE, COMMAND, GAS, PARTICLES, STATUS, STORE, SUMMARY, REPORT,
+    ];
+    own.contains(&name) || SNAPSHOTS.contains(&name) || is_computed(name)
+}
 
 /// Name of a snapshot's gas file.
 pub(super) fn gas_file(number: usize) -> String {
@@ -49,7 +96,7 @@ pub(super) fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Err
 /// Replaces a file at once: a reader sees the old content or the new, never a part.
 pub(crate) fn replace(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
     let mut draft = path.as_os_str().to_owned();
-    draft.push(".new");
+    draft.push(UNFINISHED);
     let draft = Path::new(&draft);
     let written = File::create(draft).and_then(|mut file| {
         file.write_all(content)?;

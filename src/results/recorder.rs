@@ -8,7 +8,6 @@ use calcine_coupler::findings::{Finding, FindingKind};
 use calcine_coupler::ledger::BalanceLine as LedgerSums;
 use calcine_coupler::observer::{CommittedState, CutNotice, Observer, ObserverError, Timing};
 use calcine_coupler::part::SolverInfo;
-use calcine_coupler::physics::sphere;
 use calcine_coupler::time::{Ticks, Window};
 
 use super::moment::SnapshotMoment;
@@ -28,7 +27,7 @@ use super::vtk::{self, Cells};
 use super::{
     CASE, ResultsError, SERIES, STORE, SUMMARY, files, inertial_number, snapshot, voids, warnings,
 };
-use crate::case::model::{Case, FeedSpec};
+use crate::case::model::Case;
 
 /// So many rows are gathered before they go to the HDF5 file.
 const BATCH: usize = 256;
@@ -277,38 +276,13 @@ impl Recorder {
             tracing::warn!("{words}");
         }
         let time = moment.clocks.process.seconds();
-        let findings = open_balance(moment).into_iter().chain(self.waiting(moment));
+        let findings = open_balance(moment).into_iter().chain(feeds_wait(moment));
         let findings: Vec<Finding> = findings.collect();
         for words in warnings::add(&mut self.counters.warnings, &findings, time) {
             tracing::warn!("{words}");
         }
         let results = self.counters.captured.results(&self.case, true);
         self.summarise(moment, quantities::overall(results.values()))
-    }
-
-    /// What feeds should have brought and did not.
-    fn waiting(&self, moment: &CommittedState<'_>) -> Option<Finding> {
-        let from = self.counters.from.as_ref();
-        let begun = from.map_or(0.0, |from| from.process_time_s);
-        let span = moment.clocks.process.seconds() - begun;
-        let asked = |feed: &FeedSpec| {
-            let batch = if from.is_some() { 0.0 } else { feed.batch };
-            batch + feed.rate * span
-        };
-        let asked: f64 = self.case.feeds.iter().map(asked).sum();
-        let [fed, _] = &moment.ledger.fed_and_discharged;
-        let missing = 1.0 - fed.mass / asked;
-        // Of each feed the next particle may be due for the most part.
-        let next: f64 = (self.case.feeds.iter())
-            .map(|feed| {
-                let population = &self.case.particles[feed.population];
-                let material = &self.case.materials[population.material];
-                let radius = 0.5 * population.sizes.largest();
-                population.weight * sphere::mass(radius, material.density)
-            })
-            .sum();
-        (asked > 0.0 && missing > WAITING && asked - fed.mass > 2.0 * next)
-            .then(|| Finding::unconverged(FindingKind::FeedsWait, missing, Some(WAITING)))
     }
 
     /// Whether the bed was moved too fast, in words.
@@ -420,9 +394,9 @@ impl Recorder {
                 .map(|(number, at)| (at.process_time, file(number)))
                 .collect()
         };
-        let gas = self.directory.join("gas.pvd");
+        let gas = self.directory.join(files::GAS);
         vtk::write_collection(&gas, &entries(files::gas_file))?;
-        let particles = self.directory.join("particles.pvd");
+        let particles = self.directory.join(files::PARTICLES);
         vtk::write_collection(&particles, &entries(files::particle_file))?;
         Ok(())
     }
@@ -652,6 +626,14 @@ fn open_balance(moment: &CommittedState<'_>) -> Option<Finding> {
     let errors = [ledger.mass.relative_error(), energy];
     let worst = errors.into_iter().fold(0.0, f64::max);
     (worst > OPEN).then(|| Finding::unconverged(FindingKind::OpenBalance, worst, Some(OPEN)))
+}
+
+/// What feeds should have brought and found no room for.
+fn feeds_wait(moment: &CommittedState<'_>) -> Option<Finding> {
+    let [fed, _] = &moment.ledger.fed_and_discharged;
+    let missing = moment.waiting / (fed.mass + moment.waiting);
+    (missing > WAITING)
+        .then(|| Finding::unconverged(FindingKind::FeedsWait, missing, Some(WAITING)))
 }
 
 fn status_of(summary: &Summary) -> Status {

@@ -202,7 +202,7 @@ pub(super) fn restore(
     check_snapshots(results, &counters.sums)?;
     let is_closed = is_as_left(results);
     counters.series.cut(results)?;
-    for folder in ["gas", "particles", "probes"] {
+    for folder in files::SNAPSHOTS {
         let folder = results.join(folder);
         if folder.is_dir() {
             remove_later(&folder, count)?;

@@ -9,11 +9,10 @@ use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::quadrature::gauss;
 use calcine_coupler::physics::{Vec3, sphere};
 
+use super::files::VOIDS;
 use super::{ResultsError, files, sheet};
 use crate::case::model::{Case, MeshSpec};
 
-/// Name of the file in a result directory.
-pub const VOIDS: &str = "voids.csv";
 /// Fewer particles have no profile: each would show as itself.
 const FEWEST: usize = 50;
 /// Points of a profile in one mean diameter, and in all.

@@ -17,7 +17,7 @@ use crate::assembly::{
 use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::laws::LawCatalogue;
-use crate::results::{self, Recorder, RunInfo, SUMMARY, files};
+use crate::results::{self, Recorder, RunInfo, files};
 use crate::valid::ValidCase;
 
 /// A simulation that is not begun yet: the case, and how it is to be run.
@@ -196,10 +196,7 @@ impl SimulationBuilder {
         let begun_from = begun_from.filter(|_| !resume);
         let continued = begun_from.map(|from| folder::origin(&from, self.pairing));
         let (origin, provenance) = continued.transpose()?.unzip();
-        let claimed = folder::claim(&out)?;
-        if !self.resume && !out.join(SUMMARY).exists() {
-            claimed.refuse_others()?;
-        }
+        let claimed = folder::claim(&out, self.resume)?;
         if let Some(text) = self.command.filter(|_| !self.resume) {
             files::replace(&out.join(files::COMMAND), text.as_bytes())?;
         }

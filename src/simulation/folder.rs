@@ -16,36 +16,12 @@ use tracing_subscriber::layer::SubscriberExt;
 
 use super::error::SimulationError;
 use crate::assembly::{GasBackend, Pairing};
+use crate::results::files::{is_computed, is_written};
 use crate::results::summary::{Provenance, Verdict};
 use crate::results::{SUMMARY, Summary};
 
 /// A file that every run makes and holds locked while it lives.
 const LOCK: &str = "lock";
-
-/// What runs of beds and of plants compute, in their folder.
-const COMPUTED: [&str; 7] = [
-    "checkpoint",
-    "checkpoint.before",
-    "distributions.csv",
-    "results.h5",
-    "series.csv",
-    "streams.csv",
-    "voids.csv",
-];
-
-/// What else they write there, or remove; one that failed before it began leaves some of it.
-const WRITTEN: [&str; 10] = [
-    "case.toml",
-    "checkpoint.new",
-    "gas",
-    "gas.pvd",
-    "particles",
-    "particles.pvd",
-    "probes",
-    "report.html",
-    "results.h5.new",
-    "status.json",
-];
 
 /// Name of the run's own log in `log/`.
 const OWN_LOG: &str = "calcine.log";
@@ -75,8 +51,9 @@ pub(crate) struct HeldFolder {
     _folder: Option<File>,
 }
 
-/// Claims the results folder, makes it where it is absent, with its `log/`.
-pub(crate) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
+/// Claims the results folder, makes it where it is absent, with its `log/`. Unless the run goes on, or there is a summary by which
+/// it is refused or begins again, a folder that holds what it would write over is refused.
+pub(crate) fn claim(out: &Path, resume: bool) -> Result<ClaimedFolder, SimulationError> {
     let unusable = |cause| SimulationError::UnusableFolder {
         folder: out.to_owned(),
         cause,
@@ -117,6 +94,9 @@ pub(crate) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
         _file: file,
         _folder: folder,
     });
+    if !resume && !out.join(SUMMARY).exists() {
+        claimed.refuse_others()?;
+    }
     let log = out.join("log");
     fs::create_dir_all(&log).map_err(|cause| io_error(&log, cause))?;
     Ok(claimed)
@@ -124,7 +104,7 @@ pub(crate) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
 
 impl ClaimedFolder {
     /// Refuses a folder that held, before it was claimed, what a run would write over.
-    pub(crate) fn refuse_others(&self) -> Result<(), SimulationError> {
+    fn refuse_others(&self) -> Result<(), SimulationError> {
         let before = || {
             self.before
                 .iter()
@@ -132,8 +112,7 @@ impl ClaimedFolder {
                 .filter_map(|name| name.to_str())
         };
         let of_a_run = before().any(|name| name == LOCK);
-        let in_the_way =
-            |name: &&str| COMPUTED.contains(name) || !of_a_run && WRITTEN.contains(name);
+        let in_the_way = |name: &&str| is_computed(name) || !of_a_run && is_written(name);
         let found: Vec<String> = before()
             .filter(in_the_way)
             .map(|name| format!("`{name}`"))

@@ -404,6 +404,7 @@ impl World {
             reservoirs: &[],
             reservoir_heat: &[],
             ledger: &self.ledger,
+            waiting: 0.0,
             convergence: &self.convergence,
             timing: &self.timing,
             about: [&self.about[0], &self.about[1]],

@@ -559,6 +559,7 @@ impl CoupledRun {
             reservoirs: self.interior.reservoirs(),
             reservoir_heat: &self.interior.reservoir_heat,
             ledger: &self.ledger,
+            waiting: self.plan.feeds_and_outlets.waiting(),
             step_error: self.length.error.as_ref(),
             courant: self.length.courant,
             convergence: &self.exchange.convergence,

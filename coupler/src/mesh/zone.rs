@@ -41,6 +41,18 @@ impl Zone {
         }
     }
 
+    /// Corners in m of the smallest box along the axes that holds it.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        match *self {
+            Self::Box { low, high } => [low, high],
+            Self::Cylinder { from, to, radius } => {
+                let axis = (to - from).normalize();
+                let across = axis.map(|one| radius * (1.0 - one * one).max(0.0).sqrt());
+                [from.inf(&to) - across, from.sup(&to) + across]
+            }
+        }
+    }
+
     /// Marks the cells whose centres lie in one of several zones.
     pub fn cells(zones: &[Zone], mesh: &Mesh) -> Vec<bool> {
         let centres = mesh.cell_centre().iter();
@@ -65,5 +77,8 @@ mod tests {
         assert!(zone.holds(Vec3::new(2.5 - 0.36, 3.0 + 0.27, 0.0)));
         assert!(!zone.holds(Vec3::new(2.5, 3.0, 0.6)));
         assert!(!zone.holds(Vec3::new(0.9, 0.9, 0.0)));
+        let [low, high] = zone.bounds();
+        assert!((low - Vec3::new(0.6, 0.7, -0.5)).norm() < 1e-15, "{low}");
+        assert!((high - Vec3::new(4.4, 5.3, 0.5)).norm() < 1e-15, "{high}");
     }
 }

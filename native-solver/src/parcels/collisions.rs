@@ -146,10 +146,10 @@ impl CellMotion {
 }
 
 /// Draws that depend on seed, step and id alone: a run that resumes draws the same, on any number of threads.
-struct Draws(u64);
+pub(super) struct Draws(u64);
 
 impl Draws {
-    fn new(seed: u64, step: u64, id: u64) -> Self {
+    pub(super) fn new(seed: u64, step: u64, id: u64) -> Self {
         Self(mixed(mixed(mixed(seed) ^ step) ^ id))
     }
 
@@ -160,7 +160,7 @@ impl Draws {
     }
 
     /// Between 0 and 1, neither of them.
-    fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         ((self.next() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
     }
 

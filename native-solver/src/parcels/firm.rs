@@ -4,16 +4,14 @@
 //! It is Δt² Σ_f φ_f A_f (τ_P − τ_N)/(ρ_f d_f) ≥ what flows into the cell, τ ≥ 0, one of both an equation: a linear complementarity
 //! problem, solved by primal and dual active sets (Hintermüller, Ito and Kunisch 2002, doi 10.1137/S1052623401383558).
 
-use std::sync::Arc;
-
 use calcine_coupler::physics::parcels::HarrisCrighton;
 
 use super::packing::{CellSolid, Packer};
-use crate::numerics::krylov::SolveTolerance;
-use crate::numerics::preconditioner::Preconditioner;
 
 /// Times at most that cells which push are chosen anew.
 const ACTIVE_SETS: u32 = 30;
+/// Share of their residual that linear equations leave.
+const SOLVED: f64 = 1e-8;
 /// A cell is packed where parcels are moved apart by a stress above this share of its law's constant.
 const PACKED: f64 = 0.01;
 
@@ -88,37 +86,17 @@ impl Packer {
         (inflow, conductance): (&[f64], &[f64]),
         found: &mut [f64],
     ) {
-        let grid = Arc::clone(&self.grid);
-        self.matrix.assemble(|cell, diagonal, row| {
-            if !active[cell] {
-                *diagonal = 1.0;
-                return;
-            }
-            for link in grid.links(cell).iter().filter(|link| !link.is_boundary()) {
-                let conductance = conductance[link.face as usize];
-                *diagonal += conductance;
-                if active[link.other as usize] {
-                    row[link.slot as usize] -= conductance;
-                }
-            }
-        });
-        let cells = active.iter().zip(inflow);
-        let right: Vec<f64> = cells
-            .map(|(active, inflow)| if *active { *inflow } else { 0.0 })
-            .collect();
         for (found, active) in found.iter_mut().zip(active) {
             if !active {
                 *found = 0.0;
             }
         }
-        self.incomplete.update(&self.matrix);
-        let target = SolveTolerance {
-            absolute: 0.0,
-            of_terms: 0.0,
-            relative: 1e-8,
-            iterations: 1000,
-        };
-        self.krylov
-            .symmetric(&self.matrix, &mut self.incomplete, &right, found, target);
+        let cells = active.iter().zip(inflow);
+        let right: Vec<f64> = cells
+            .map(|(active, inflow)| if *active { *inflow } else { 0.0 })
+            .collect();
+        let stored = |cell: usize| active[cell].then_some(0.0);
+        self.system
+            .solve(conductance, stored, (&right, found), SOLVED);
     }
 }

@@ -137,8 +137,7 @@ impl RubbingSolid {
     /// What friction adds to the velocity of each cell in m/s.
     pub fn changes(&self) -> Vec<Vec3> {
         let count = self.cells.len();
-        let most: f64 = self.inner.iter().map(|face| face.limit).sum::<f64>()
-            + self.walls.iter().map(|face| face.limit).sum::<f64>();
+        let most: f64 = self.limits().sum();
         let mut change = vec![Vec3::zeros(); count];
         let mut moved: Vec<Vec3> = self.cells.iter().map(|cell| cell.velocity).collect();
         for _ in 0..ITERATIONS {
@@ -286,18 +285,14 @@ fn weighted(slips: &[Vec3], weights: &[f64]) -> Vec<Vec3> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::collisions::Draws;
     use super::*;
 
     /// A block of cells, with centres of mass off the corners of a lattice and any velocities.
     fn block(limit: f64) -> (RubbingSolid, Vec<Vec3>) {
         let count = [4, 3, 3];
-        let mut state = 7_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 40) as f64 / (1u64 << 24) as f64 - 0.5
-        };
+        let mut draws = Draws::new(7, 0, 0);
+        let mut next = || draws.uniform() - 0.5;
         let place = |x: usize, y: usize, z: usize| (z * count[1] + y) * count[0] + x;
         let (mut centre, mut cells, mut inner) = (Vec::new(), Vec::new(), Vec::new());
         for z in 0..count[2] {

@@ -12,6 +12,7 @@ mod rubbing;
 mod state;
 mod step;
 mod stress;
+mod stress_system;
 mod tetrahedra;
 mod track;
 mod walls;
@@ -234,13 +235,13 @@ impl NativeParcels {
             step.damp(parcels, &solid);
         }
         let packing = &self.motion.packing;
-        let given = self.packer.act(
+        let action = self.packer.act(
             (packing, self.motion.friction.is_some()),
             &self.tetrahedra,
             (parcels, amounts),
             time,
         )?;
-        let given = given + self.rub((parcels, amounts), time);
+        let given = action.impulse + self.rub(&action.stress, (parcels, amounts), time);
         if collisions.isotropy {
             let solid = self.packer.solid(&self.tetrahedra, parcels, amounts);
             step.redraw(parcels, &solid);
@@ -249,7 +250,7 @@ impl NativeParcels {
     }
 
     /// Has parcels rub under the stress; the impulse in N s that walls gave.
-    fn rub(&self, rows: (&mut [FlyingParcel], RowAmounts<'_>), time: f64) -> Vec3 {
+    fn rub(&self, stress: &[f64], rows: (&mut [FlyingParcel], RowAmounts<'_>), time: f64) -> Vec3 {
         let Some(friction) = self.motion.friction else {
             return Vec3::zeros();
         };
@@ -259,7 +260,7 @@ impl NativeParcels {
             tetrahedra: &self.tetrahedra,
             time,
         };
-        step.act(&self.packer, rows)
+        step.act((&self.packer, stress), rows)
     }
 
     /// Cell of each parcel.

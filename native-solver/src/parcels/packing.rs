@@ -21,14 +21,14 @@ use rayon::prelude::*;
 use super::error::ParcelError;
 use super::step::{FlyingParcel, PIECE};
 use super::stress::StressCurve;
+use super::stress_system::StressSystem;
 use super::tetrahedra::Tetrahedra;
 use crate::numerics::grid::{Face, MeshGraph};
-use crate::numerics::krylov::{Krylov, SolveTolerance};
-use crate::numerics::matrix::Matrix;
-use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// Newton's iterations at most; far from the solution each doubles the stress.
 const ITERATIONS: u32 = 80;
+/// Share of its residual that each leaves of its linear equations.
+const SOLVED: f64 = 1e-6;
 /// Residual of a cell as a solid fraction at which they end.
 const RESIDUAL: f64 = 1e-9;
 /// Σ cos² of the directions to the neighbours of a cell against one direction, above which they tell how the stress changes along it.
@@ -65,20 +65,25 @@ pub struct CellSolid {
     pub momentum: Vec<Vec3>,
 }
 
+/// What acted in a step.
+#[derive(Clone, Debug, Default)]
+pub struct PackingAction {
+    /// The impulse in N s that walls gave all parcels.
+    pub impulse: Vec3,
+    /// The stress in Pa by which velocities were changed; of a firm bed alone.
+    pub stress: Vec<f64>,
+}
+
 /// Solves for the stress on a mesh and has it act.
 #[derive(Debug)]
 pub struct Packer {
     pub(super) grid: Arc<MeshGraph>,
     weights: LinearWeights,
-    /// The stress in Pa that acted last; empty where none does.
-    stress: Vec<f64>,
     /// Face of the grid of each face of the mesh, and 1 where both have their normals out of the face's owner, else −1.
     grid_face: Vec<(u32, f64)>,
     /// Face of the mesh of each face of the grid.
     mesh_face: Vec<u32>,
-    pub(super) matrix: Matrix,
-    pub(super) incomplete: Incomplete,
-    pub(super) krylov: Krylov,
+    pub(super) system: StressSystem,
 }
 
 impl Packer {
@@ -97,19 +102,11 @@ impl Packer {
         }
         Self {
             weights: LinearWeights::new(mesh),
-            stress: Vec::new(),
-            matrix: Matrix::new(Arc::clone(&grid)),
-            incomplete: Incomplete::default(),
-            krylov: Krylov::default(),
+            system: StressSystem::new(&grid),
             grid_face,
             mesh_face,
             grid,
         }
-    }
-
-    /// The stress in Pa that acted last; empty where none does.
-    pub fn stress(&self) -> &[f64] {
-        &self.stress
     }
 
     /// How parcels belong to cells.
@@ -127,10 +124,9 @@ impl Packer {
         self.mesh_face[face] as usize
     }
 
-    /// The stress that acted last at a wall in Pa, as the wall carries it.
-    pub fn stress_at_wall(&self, cell: usize, face: usize) -> f64 {
-        let face = &self.grid.faces[face];
-        self.stress[cell] + self.risen(&self.stress, cell, face)
+    /// The stress at a wall in Pa, as the wall carries it.
+    pub fn stress_at_wall(&self, stress: &[f64], cell: usize, face: usize) -> f64 {
+        stress[cell] + self.risen(stress, cell, &self.grid.faces[face])
     }
 
     /// What belongs to each cell.
@@ -167,16 +163,16 @@ impl Packer {
     }
 
     /// Has the stress act over a step in s; where the bed is firm, velocities change by the stress that keeps packed cells from being
-    /// compressed in place of that which moves parcels apart. The impulse in N s that walls gave all parcels.
+    /// compressed in place of that which moves parcels apart.
     pub fn act(
         &mut self,
         (packing, firm): (&ParcelPacking, bool),
         tetrahedra: &Tetrahedra,
         (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
         time: f64,
-    ) -> Result<Vec3, ParcelError> {
+    ) -> Result<PackingAction, ParcelError> {
         match packing {
-            ParcelPacking::None => Ok(Vec3::zeros()),
+            ParcelPacking::None => Ok(PackingAction::default()),
             ParcelPacking::Implicit(law) => {
                 self.implicit((law, firm), tetrahedra, (parcels, amounts), time)
             }
@@ -188,7 +184,6 @@ impl Packer {
                 let of = |&fraction: &f64| stress.stress(fraction).0;
                 let stress: Vec<f64> = solid.fraction.iter().map(of).collect();
                 let changes = self.changes(&stress, &solid.mass, time);
-                self.stress = stress;
                 let mean = solid.momentum.iter().zip(&solid.mass);
                 let mean: Vec<Vec3> = mean.map(|(p, &m)| per_mass(*p, m)).collect();
                 let changes = self.weights.spread(tetrahedra.mesh(), &changes);
@@ -203,7 +198,10 @@ impl Packer {
                     parcel.velocity += change;
                     given += amounts.mass[row] * change;
                 }
-                Ok(given)
+                Ok(PackingAction {
+                    impulse: given,
+                    stress: if firm { stress } else { Vec::new() },
+                })
             }
         }
     }
@@ -214,7 +212,7 @@ impl Packer {
         tetrahedra: &Tetrahedra,
         (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
         time: f64,
-    ) -> Result<Vec3, ParcelError> {
+    ) -> Result<PackingAction, ParcelError> {
         let solid = self.solid(tetrahedra, parcels, amounts);
         let density = |cell: usize| {
             let solids = solid.fraction[cell] * self.weights.volume()[cell];
@@ -238,7 +236,7 @@ impl Packer {
         let mesh = tetrahedra.mesh();
         let begun: Vec<FlyingParcel> = parcels.to_vec();
         let mut wanted = solid.fraction.clone();
-        let mut given = Vec3::zeros();
+        let mut action = PackingAction::default();
         let mut best = (f64::INFINITY, 0, Vec::new());
         for round in 1..=ROUNDS {
             let stress = match self.solve(law, &wanted, &conductance) {
@@ -265,15 +263,12 @@ impl Packer {
                 .collect();
             if round == 1 {
                 let felt = match firm {
-                    false => {
-                        self.stress = stress.clone();
-                        felt
-                    }
+                    false => felt,
                     true => {
                         let firm = self.firm_stress(law, (&stress, &solid, &conductance), time);
                         let changes = self.changes(&firm, &solid.mass, time);
                         let changes = self.weights.spread(mesh, &changes);
-                        self.stress = firm;
+                        action.stress = firm;
                         let at = |one: &FlyingParcel| {
                             let share = tetrahedra.map(one.place).of(one.position);
                             self.weights.at(mesh, &changes, (one.place, share))
@@ -283,13 +278,13 @@ impl Packer {
                 };
                 for ((parcel, change), mass) in parcels.iter_mut().zip(felt).zip(amounts.mass) {
                     parcel.pushed(change);
-                    given += *mass * change;
+                    action.impulse += *mass * change;
                 }
             }
             let found = self.fraction(tetrahedra, parcels, amounts);
             let fullest = found.iter().copied().fold(0.0, f64::max);
             if fullest <= law.close_packing {
-                return Ok(given);
+                return Ok(action);
             }
             if fullest < best.0 {
                 let places = parcels.iter().map(|one| (one.position, one.place));
@@ -305,7 +300,7 @@ impl Packer {
         for (parcel, (position, place)) in parcels.iter_mut().zip(best.2) {
             (parcel.position, parcel.place) = (position, place);
         }
-        Ok(given)
+        Ok(action)
     }
 
     /// Solid fraction of each cell.
@@ -375,29 +370,10 @@ impl Packer {
             if left <= RESIDUAL || !left.is_finite() {
                 break;
             }
-            self.matrix.assemble(|cell, diagonal, row| {
-                *diagonal += volume[cell] * curve.fraction(stress[cell]).1;
-                for link in grid.links(cell).iter().filter(|link| !link.is_boundary()) {
-                    let conductance = conductance[link.face as usize];
-                    *diagonal += conductance;
-                    row[link.slot as usize] -= conductance;
-                }
-            });
-            self.incomplete.update(&self.matrix);
+            let stored = |cell: usize| Some(volume[cell] * curve.fraction(stress[cell]).1);
             change.fill(0.0);
-            let target = SolveTolerance {
-                absolute: 0.0,
-                of_terms: 0.0,
-                relative: 1e-6,
-                iterations: 1000,
-            };
-            self.krylov.symmetric(
-                &self.matrix,
-                &mut self.incomplete,
-                &residual,
-                &mut change,
-                target,
-            );
+            self.system
+                .solve(conductance, stored, (&residual, &mut change), SOLVED);
             for (stress, change) in stress.iter_mut().zip(&change) {
                 *stress += change;
             }

@@ -1,6 +1,6 @@
 //! Friction of parcels under the stress of the solid: from parcels to cells and back (docs/theory.md, NSP-1).
 
-use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::tetrahedra::{Barycentric, TetPlace};
 use calcine_coupler::parcels::ParcelFriction;
 use calcine_coupler::physics::Vec3;
 
@@ -27,29 +27,39 @@ pub struct RubStep<'a> {
 }
 
 impl RubStep<'_> {
-    /// Has friction act under the stress that acted last; the impulse in N s that walls gave all parcels.
+    /// Has friction act under a stress in Pa; the impulse in N s that walls gave all parcels.
     pub fn act(
         &self,
-        packer: &Packer,
+        (packer, stress): (&Packer, &[f64]),
         (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
     ) -> Vec3 {
-        let stress = packer.stress();
         if stress.is_empty() {
             return Vec3::zeros();
         }
         let mesh = self.tetrahedra.mesh();
         let weights = packer.weights();
         let solid = packer.solid(self.tetrahedra, parcels, amounts);
-        let (row_of, cells): (Vec<usize>, Vec<usize>) = {
-            let mut row_of = vec![NONE; mesh.cells()];
-            let holds = |cell: &usize| solid.mass[*cell] > 0.0 && solid.yielding[*cell] > 0.0;
-            let cells: Vec<usize> = (0..mesh.cells()).filter(holds).collect();
-            for (row, &cell) in cells.iter().enumerate() {
-                row_of[cell] = row;
-            }
-            (row_of, cells)
+        let holds = |cell: &usize| solid.mass[*cell] > 0.0 && solid.yielding[*cell] > 0.0;
+        let cells: Vec<usize> = (0..mesh.cells()).filter(holds).collect();
+        let mut row_of = vec![NONE; mesh.cells()];
+        for (row, &cell) in cells.iter().enumerate() {
+            row_of[cell] = row;
+        }
+        let place = |parcel: &FlyingParcel| {
+            let map = self.tetrahedra.map(parcel.place);
+            (parcel.place, map.of(parcel.position))
         };
-        let offset = self.offsets(packer, parcels, amounts, &solid.mass);
+        let places: Vec<(TetPlace, Barycentric)> = parcels.iter().map(place).collect();
+        // From the centre of each cell to the centre of mass of what belongs to it, in m.
+        let mut offset = vec![Vec3::zeros(); mesh.cells()];
+        for ((parcel, &at), amount) in parcels.iter().zip(&places).zip(amounts.mass) {
+            weights.shares(mesh, at, |cell, share| {
+                let cell = cell as usize;
+                let way = parcel.position - mesh.cell_centre()[cell];
+                let way = mesh.periodicity().shortest(way);
+                offset[cell] += share * *amount / solid.mass[cell] * way;
+            });
+        }
         let rubbing = cells.iter().map(|&cell| RubbingCell {
             // What drag leaves of an impulse accelerates less.
             mass: solid.mass[cell] * solid.mass[cell] / solid.yielding[cell],
@@ -83,11 +93,11 @@ impl RubStep<'_> {
             }
             let of_mesh = packer.face_of_mesh(index);
             let friction = against.friction(self.walls, of_mesh, face.owner);
-            let pressed = packer.stress_at_wall(face.owner, index);
+            let pressed = packer.stress_at_wall(stress, face.owner, index);
             let centre = grid.centre[face.owner] + offset[face.owner];
             let distance = face.owner_distance - offset[face.owner].dot(&face.normal);
             let way = distance * face.normal;
-            let (_, velocity) = self.walls.at(of_mesh, 0, centre + way, face.normal);
+            let velocity = self.walls.velocity(of_mesh, centre + way, face.normal);
             walls.push(RubbingWall {
                 cell: row,
                 way,
@@ -104,67 +114,13 @@ impl RubStep<'_> {
         }
         let felt = weights.spread(mesh, &felt);
         let mut given = Vec3::zeros();
-        for (parcel, mass) in parcels.iter_mut().zip(amounts.mass) {
-            let share = self.tetrahedra.map(parcel.place).of(parcel.position);
-            let change = weights.at(mesh, &felt, (parcel.place, share));
+        for ((parcel, at), mass) in parcels.iter_mut().zip(places).zip(amounts.mass) {
+            let change = weights.at(mesh, &felt, at);
             parcel.pushed(change);
             given += *mass * change;
         }
         given
     }
-
-    /// From the centre of each cell to the centre of mass of what belongs to it, in m.
-    fn offsets(
-        &self,
-        packer: &Packer,
-        parcels: &[FlyingParcel],
-        amounts: RowAmounts<'_>,
-        mass: &[f64],
-    ) -> Vec<Vec3> {
-        let mesh = self.tetrahedra.mesh();
-        let periods = periods(mesh);
-        let centre = mesh.cell_centre();
-        let mut offset = vec![Vec3::zeros(); mesh.cells()];
-        for (parcel, amount) in parcels.iter().zip(amounts.mass) {
-            let share = self.tetrahedra.map(parcel.place).of(parcel.position);
-            packer
-                .weights()
-                .shares(mesh, (parcel.place, share), |cell, share| {
-                    let cell = cell as usize;
-                    let way = nearest(parcel.position - centre[cell], &periods);
-                    offset[cell] += share * *amount * way;
-                });
-        }
-        for (offset, mass) in offset.iter_mut().zip(mass) {
-            *offset = if *mass > 0.0 {
-                *offset / *mass
-            } else {
-                Vec3::zeros()
-            };
-        }
-        offset
-    }
-}
-
-/// Translations of the periodic planes of a mesh.
-fn periods(mesh: &Mesh) -> Vec<Vec3> {
-    let mut periods: Vec<Vec3> = Vec::new();
-    for pair in mesh.periodic_faces() {
-        let new = pair.translation;
-        let known = |old: &Vec3| (old - new).norm() <= 1e-9 * new.norm();
-        if !periods.iter().any(known) {
-            periods.push(new);
-        }
-    }
-    periods
-}
-
-/// The shortest of the ways that periodic planes do not tell apart.
-fn nearest(mut way: Vec3, periods: &[Vec3]) -> Vec3 {
-    for period in periods {
-        way -= (way.dot(period) / period.norm_squared()).round() * period;
-    }
-    way
 }
 
 /// Of which populations the mass in each cell is.

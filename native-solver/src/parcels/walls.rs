@@ -68,6 +68,13 @@ impl WallFaces {
         normal: Vec3,
     ) -> (ParcelImpact, Vec3) {
         let wall = &self.walls[self.of_face[face - self.internal] as usize];
+        let along = self.velocity(face, place, normal);
+        (wall.impact[population as usize], along)
+    }
+
+    /// The velocity of the wall of a boundary face at a place along itself, in m/s.
+    pub fn velocity(&self, face: usize, place: Vec3, normal: Vec3) -> Vec3 {
+        let wall = &self.walls[self.of_face[face - self.internal] as usize];
         let velocity = match &wall.motion {
             WallMotion::Translating(velocity) => *velocity,
             WallMotion::Rotating {
@@ -76,8 +83,7 @@ impl WallFaces {
             } => angular_velocity.cross(&(place - point)),
             _ => Vec3::zeros(),
         };
-        let along = velocity - velocity.dot(&normal) * normal;
-        (wall.impact[population as usize], along)
+        velocity - velocity.dot(&normal) * normal
     }
 }
 

@@ -86,26 +86,72 @@ const SPIN: [[&str; 3]; 3] = [
     ["omegaz", "angular_velocity:2", "omega:2"],
 ];
 
-/// Columns of text files that people write and that are not read, and what to do.
-const MEANT: [(&[&str], &str); 5] = [
+/// Names under which people write what is read under another one, alone or beside a unit; and what to do.
+const MEANT: [(&[&str], &str); 7] = [
     (
-        &["d", "dp", "diam", "size"],
-        "name it `diameter`, or leave it out",
-    ),
-    (&["r", "rp"], "name it `radius`, or leave it out"),
-    (
-        &["u", "v", "w", "ux", "uy", "uz"],
-        "name velocities `vx`, `vy` and `vz`, or leave them out",
+        &["d", "dia", "diam", "diameter", "durchmesser", "size"],
+        "name it `diameter` (in m), or leave it out",
     ),
     (
-        &["wx", "wy", "wz"],
-        "name angular velocities `omegax`, `omegay` and `omegaz`, or leave them out",
+        &["r", "rad", "radius"],
+        "name it `radius` (in m), or leave it out",
     ),
     (
-        &["t", "tp", "temp"],
-        "name it `temperature`, or leave it out",
+        &["t", "temp", "temperatur", "temperature"],
+        "name it `temperature` (in K), or leave it out",
+    ),
+    (
+        &["density", "dichte", "rho"],
+        "name it `density` (in kg/m^3), or leave it out",
+    ),
+    (
+        &["mass", "masse"],
+        "name it `mass` (in kg), or leave it out",
+    ),
+    (
+        &[
+            "angularvelocity",
+            "omega",
+            "omegax",
+            "omegay",
+            "omegaz",
+            "spin",
+            "wx",
+            "wy",
+            "wz",
+        ],
+        "name angular velocities `omegax`, `omegay` and `omegaz` (in rad/s), or leave them out",
+    ),
+    (
+        &[
+            "geschwindigkeit",
+            "speed",
+            "u",
+            "ux",
+            "uy",
+            "uz",
+            "v",
+            "velocities",
+            "velocity",
+            "velocityx",
+            "velocityy",
+            "velocityz",
+            "vx",
+            "vy",
+            "vz",
+            "w",
+        ],
+        "name velocities `vx`, `vy` and `vz` (in m/s), or leave them out",
     ),
 ];
+
+/// Parts of names that are units.
+const UNITS: [&str; 15] = [
+    "m", "mm", "cm", "um", "k", "c", "degc", "kg", "g", "m3", "mm3", "s", "ms", "m^3", "rad",
+];
+
+/// Parts of names that say whose value it is: it is the particle's all the same.
+const WHOSE: [&str; 4] = ["initial", "p", "particle", "particles"];
 
 const DIAMETER: [&str; 1] = ["diameter"];
 
@@ -124,52 +170,9 @@ const TYPE: [&str; 1] = ["type"];
 
 const ID: [&str; 1] = ["id"];
 
-/// Words for a column that is not read under its name, as parts of longer names too, and what to do.
-const WORDS: [(&[&str], &str); 6] = [
-    (
-        &["diameter", "diam", "dia", "durchmesser"],
-        "name it `diameter` (in m), or leave it out",
-    ),
-    (
-        &["radius", "rad"],
-        "name it `radius` (in m), or leave it out",
-    ),
-    (
-        &["temperature", "temp", "temperatur"],
-        "name it `temperature` (in K), or leave it out",
-    ),
-    (
-        &["density", "rho", "dichte"],
-        "name it `density` (in kg/m^3), or leave it out",
-    ),
-    (
-        &["velocity", "velocities", "speed"],
-        "name velocities `vx`, `vy` and `vz` (in m/s), or leave them out",
-    ),
-    (
-        &["mass", "masse"],
-        "name it `mass` (in kg), or leave it out",
-    ),
-];
-
-/// Names of components that are read, written in another way.
-const VECTORS: [(&[&str], &str); 2] = [
-    (
-        &["vx", "vy", "vz"],
-        "name velocities `vx`, `vy` and `vz`, or leave them out",
-    ),
-    (
-        &["omegax", "omegay", "omegaz"],
-        "name angular velocities `omegax`, `omegay` and `omegaz`, or leave them out",
-    ),
-];
-
-/// Parts of names that are units.
-const UNITS: [&str; 14] = [
-    "m", "mm", "cm", "um", "k", "c", "degc", "kg", "g", "m3", "mm3", "s", "ms", "m^3",
-];
-
-/// What a column that is not read is likely meant for: one of these words, with a unit or other words beside it.
+/// What a column that is not read is likely meant for.
+///
+/// A longer name that says more, such as `mass_fraction` or `surface_temperature`, is of something else.
 fn meant(name: &str) -> Option<&'static str> {
     if is_read(name) {
         return None;
@@ -178,26 +181,18 @@ fn meant(name: &str) -> Option<&'static str> {
         .split(|letter: char| !letter.is_alphanumeric() && letter != '^')
         .filter(|part| !part.is_empty())
         .collect();
-    let worded = WORDS
+    // The first part is a name even where it is the letter of a unit.
+    let rest = parts
         .iter()
-        .find(|(words, _)| parts.iter().any(|part| words.contains(part)));
-    if let Some((_, meant)) = worded {
-        return Some(meant);
-    }
-    let joined = parts.concat();
-    let vector = MEANT.iter().chain(&VECTORS);
-    let mut vector = vector.filter(|(names, _)| names.contains(&joined.as_str()));
-    if let Some((_, meant)) = vector.next() {
-        return Some(meant);
-    }
-    // A single letter stands by itself, or beside a unit.
-    let [first, units @ ..] = &parts[..] else {
-        return None;
-    };
-    let alone = units.iter().all(|part| UNITS.contains(part));
+        .enumerate()
+        .filter(|(place, part)| !WHOSE.contains(part) && (*place == 0 || !UNITS.contains(part)));
+    let word: String = rest.map(|(_, part)| *part).collect();
+    // A letter glued to a name, as in `dp`.
+    let short = word.strip_suffix('p').filter(|word| word.len() == 1);
+    let word = short.unwrap_or(&word);
     MEANT
         .iter()
-        .find(|(names, _)| names.contains(&name) || alone && names.contains(first))
+        .find(|(names, _)| names.contains(&word))
         .map(|(_, meant)| *meant)
 }
 
