@@ -323,6 +323,16 @@ fn what_is_stated_without_an_effect_and_what_is_left_out_is_warned_of() {
         "has no effect: `laws.conduction`"
     ));
 
+    for (law, key) in [
+        ("rolling", "rolling_friction"),
+        ("cohesion", "cohesion_energy"),
+    ] {
+        let none = format!("motion.{law}={{ law = \"none\" }}");
+        let words = format!("`contacts[0].{key}` has no effect: the law of `motion.{law}`");
+        assert!(warned("moving", &[&none], &words), "{law}");
+        assert!(!warned("moving", &[], &words), "{law}");
+    }
+
     let plate = read(&good("moving"), &[])
         .unwrap()
         .walls

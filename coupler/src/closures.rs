@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use calcine_physics::Vec3;
 use calcine_physics::drag::Drag;
+use calcine_physics::figures::Brief;
 use calcine_physics::film::{
     FILM_TEMPERATURES, FilmCoefficient, FilmDiffusivity, FilmState, FilmTemperature, FilmTheory,
 };
@@ -52,7 +53,7 @@ pub struct Closures {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ClosureError {
     /// A void fraction outside (0, 1].
-    #[error("particle {id} sees a void fraction of {value}, which is not in (0, 1]")]
+    #[error("particle {id} sees a void fraction of {value}, which is not in (0, 1]", value = Brief(*.value))]
     VoidFraction {
         /// The particle's id.
         id: u64,
@@ -63,8 +64,7 @@ pub enum ClosureError {
     #[error(
         "the {law} coefficient of particle {id} is {value} {unit} at a gas temperature of {temperature} K and a slip of {slip} \
          m/s; it must be finite and zero or above: look at `warnings` of summary.json for what left its range before, shorten \
-         the windows, or choose another law"
-    )]
+         the windows, or choose another law", value = Brief(*.value), temperature = Brief(*.temperature), slip = Brief(*.slip))]
     Coefficient {
         /// Which law.
         law: &'static str,

@@ -1,5 +1,6 @@
 //! What is wrong with a plant, or stops its computation.
 
+use calcine_physics::figures::Brief;
 use thiserror::Error;
 
 use crate::signal::SignalKind;
@@ -76,8 +77,7 @@ pub enum PlantError {
     },
     /// Particles that have come into the last class of the grid.
     #[error(
-        "{place} at {time} s: {share:.3e} of the mass is in the last size class, beyond which nothing grows; let the size classes end above {to} m, or the plant take large particles out"
-    )]
+        "{place} at {time} s: {share:.3e} of the mass is in the last size class, beyond which nothing grows; let the size classes end above {to} m, or the plant take large particles out", time = Brief(*.time))]
     GrownBeyond {
         /// Unit.
         place: String,
@@ -90,8 +90,7 @@ pub enum PlantError {
     },
     /// Aggregation that has reached the end of the grid by a kernel that gels.
     #[error(
-        "{place} at {time} s: {share:.3e} of the mass has grown into the last size class by a kernel of degree {degree:.3}, which gels: above degree 1 particles become infinitely large in finite time; end the run before, lower the kernel, or take one of degree 1 or less"
-    )]
+        "{place} at {time} s: {share:.3e} of the mass has grown into the last size class by a kernel of degree {degree:.3}, which gels: above degree 1 particles become infinitely large in finite time; end the run before, lower the kernel, or take one of degree 1 or less", time = Brief(*.time))]
     Gels {
         /// Unit.
         place: String,
@@ -147,8 +146,7 @@ pub enum PlantError {
     },
     /// A mill without solids.
     #[error(
-        "no solids flow into mill \"{unit}\" at {time} s, so that its power has nothing to act on; lower the screen's cut size, or take a mill without power (`constant`)"
-    )]
+        "no solids flow into mill \"{unit}\" at {time} s, so that its power has nothing to act on; lower the screen's cut size, or take a mill without power (`constant`)", time = Brief(*.time))]
     IdleMill {
         /// Unit.
         unit: String,
@@ -157,8 +155,7 @@ pub enum PlantError {
     },
     /// A recycle that does not converge.
     #[error(
-        "recycle through stream {stream} does not converge at {time} s after {iterations} iterations: {grows}; the recycle gains more than leaves the plant, check screens and splitters within it"
-    )]
+        "recycle through stream {stream} does not converge at {time} s after {iterations} iterations: {grows}; the recycle gains more than leaves the plant, check screens and splitters within it", time = Brief(*.time))]
     Recycle {
         /// Tear stream, as "unit.port -> unit.port".
         stream: String,
@@ -184,7 +181,7 @@ pub enum PlantError {
         wanted: SignalKind,
     },
     /// A bed that cannot be followed.
-    #[error("bed \"{unit}\" at {time} s: {cause}")]
+    #[error("bed \"{unit}\" at {time} s: {cause}", time = Brief(*.time))]
     Bed {
         /// Unit.
         unit: String,
@@ -205,8 +202,7 @@ pub enum PlantError {
     },
     /// A number that is not finite.
     #[error(
-        "{quantity} of {place} is not finite at {time} s; check the unit's parameters and its feeds"
-    )]
+        "{quantity} of {place} is not finite at {time} s; check the unit's parameters and its feeds", time = Brief(*.time))]
     NotFinite {
         /// Unit or stream.
         place: String,
@@ -216,7 +212,7 @@ pub enum PlantError {
         time: f64,
     },
     /// An integration that does not come to its end.
-    #[error("the plant could not be followed beyond {reached} s: {cause}")]
+    #[error("the plant could not be followed beyond {reached} s: {cause}", reached = Brief(*.reached))]
     Steps {
         /// Time reached in s.
         reached: f64,

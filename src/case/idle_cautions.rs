@@ -3,12 +3,12 @@
 use calcine_coupler::feeds::places;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
-use calcine_coupler::motion::{Motion, WallMotion, WallShape};
+use calcine_coupler::motion::{Cohesion, Motion, Rolling, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{GasPatch, ParticleSetup};
 
 use super::in_wall;
-use super::model::{Case, FeedSpec, MotionSpec};
+use super::model::{Case, ContactSpec, FeedSpec, MotionSpec};
 use super::place_error::PlaceError;
 use super::units::listed;
 
@@ -24,7 +24,36 @@ pub(super) fn all(case: &Case) -> Vec<String> {
     all.extend(wall_temperatures(case));
     all.extend(unused_materials(case));
     all.extend(doubled_walls(case));
+    all.extend(unused_contacts(case));
     all
+}
+
+/// Properties of contacts that belong to a law which is not chosen.
+fn unused_contacts(case: &Case) -> Vec<String> {
+    let Some(motion) = &case.motion else {
+        return Vec::new();
+    };
+    let no_rolling = motion.parcels.is_some() || motion.law.rolling == Rolling::None;
+    let no_cohesion = motion.parcels.is_some() || motion.law.cohesion == Cohesion::None;
+    let idle = |key: &str, law: &str, stated: fn(&ContactSpec) -> Option<f64>| {
+        let mut contacts = case.contacts.iter().enumerate();
+        let (index, _) = contacts.find(|(_, one)| stated(one).is_some_and(|value| value > 0.0))?;
+        Some(match motion.parcels {
+            Some(_) => format!("`contacts[{index}].{key}` has no effect: parcels have no contacts"),
+            None => {
+                format!(
+                    "`contacts[{index}].{key}` has no effect: the law of `motion.{law}` is \"none\""
+                )
+            }
+        })
+    };
+    let rolling = idle("rolling_friction", "rolling", |one| one.rolling_friction);
+    let cohesion = idle("cohesion_energy", "cohesion", |one| one.cohesion_energy);
+    let rolling = rolling.filter(|_| no_rolling);
+    rolling
+        .into_iter()
+        .chain(cohesion.filter(|_| no_cohesion))
+        .collect()
 }
 
 /// Materials that nothing is made of.

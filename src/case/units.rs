@@ -1,10 +1,7 @@
 //! Quantities with units: "2 mm", "25 cm^3/min", "300 K", "10 10 120 mm".
 
 pub use calcine_coupler::physics::dimension::Dimension;
-
-/// Sizes of numbers between which messages show them without an exponent.
-const LEAST_PLAIN: f64 = 1e-12;
-const MOST_PLAIN: f64 = 1e15;
+use calcine_coupler::physics::figures::{Brief, rounded};
 
 /// A unit: value in SI = factor · value (+ offset for degrees Celsius alone).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,7 +236,7 @@ pub fn shown(number: f64) -> String {
 
 /// A computed number as messages show it, to six digits.
 pub fn short(number: f64) -> String {
-    rounded(number, 5)
+    Brief(number).to_string()
 }
 
 /// Most names in one warning.
@@ -262,18 +259,6 @@ pub(in crate::case) fn listed(names: &[&str]) -> Option<String> {
 /// A computed number as warnings show it, to three digits.
 pub fn short3(number: f64) -> String {
     rounded(number, 2)
-}
-
-/// A number to so many digits behind the first, with an exponent where it would have many zeros.
-fn rounded(number: f64, digits: usize) -> String {
-    let rounded = format!("{number:.digits$e}")
-        .parse::<f64>()
-        .unwrap_or(number);
-    let size = rounded.abs();
-    match size == 0.0 || (LEAST_PLAIN..MOST_PLAIN).contains(&size) {
-        true => rounded.to_string(),
-        false => format!("{rounded:e}"),
-    }
 }
 
 /// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.

@@ -2,6 +2,7 @@
 
 use calcine_coupler::motion::Motion;
 use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::view_factors::ViewFactors;
 
 use super::model::{Case, MotionSpec};
 use super::span;
@@ -16,6 +17,8 @@ const PARTICLE: f64 = 2e-6;
 const PARCEL: f64 = 4e-6;
 /// Of a particle that reacts in a window, over its attempts.
 const REACTING: f64 = 80e-6;
+/// Of a ray by which a particle's view factors are found: 1 to 2.5 µs.
+const RAY: f64 = 2e-6;
 
 /// Estimated wall time in s of a native run. What feeds bring is not in it.
 pub(super) fn seconds(case: &Case, cells: usize, setup: &ParticleSetup) -> f64 {
@@ -44,7 +47,22 @@ pub(super) fn seconds(case: &Case, cells: usize, setup: &ParticleSetup) -> f64 {
             PARTICLE + motion + chemistry
         })
         .sum();
-    windows * (gas + of_particles)
+    windows * (gas + of_particles) + views(case, setup, windows) * RAY
+}
+
+/// Rays that are followed in a run.
+fn views(case: &Case, setup: &ParticleSetup, windows: f64) -> f64 {
+    let Some(radiation) = &case.laws.radiation else {
+        return 0.0;
+    };
+    let ViewFactors::Rays { rays, .. } = radiation.view_factors else {
+        return 0.0;
+    };
+    let times = match setup.motion {
+        Motion::Frozen => 1.0,
+        _ => windows.min((case.time.end.seconds() / radiation.refresh).ceil()),
+    };
+    times * rays as f64 * setup.radius.len() as f64
 }
 
 /// A wall time in a unit that suits it, to one or two digits.
@@ -93,6 +111,7 @@ mod tests {
             ("fluidised-bed", 82.0),
             ("settled-bed", 5.6),
             ("purged-bed", 12.6),
+            ("bed-conductivity", 3.5),
         ] {
             let path = folder.join(format!("cases/{name}.toml"));
             let valid = ValidCase::open(&path, &[]).unwrap();

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::console::say;
 use super::failure::Failure;
 use super::schema;
+use super::shell::word;
 use crate::exit;
 use crate::laws::LawCatalogue;
 
@@ -141,8 +142,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     std::fs::write(&file, text).map_err(failed)?;
     std::fs::write(folder.join(SCHEMA), schema::text(kind)).map_err(failed)?;
     say(format_args!(
-        "{}: change it, then\n  calcine check {0}\n  calcine {command} {0}",
-        file.display()
+        "{}: change it, then\n  calcine check {1}\n  calcine {command} {1}",
+        file.display(),
+        word(file.as_os_str())
     ))?;
     Ok(exit::OK)
 }

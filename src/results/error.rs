@@ -54,7 +54,7 @@ pub enum ResultsError {
         fact: &'static str,
     },
     /// A file that could not be read or written.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}: {}", path.display(), told_by_hdf5(&source.to_string()))]
     #[diagnostic(help("check the space on the disk and the permissions of the directory"))]
     File {
         /// What was tried: `read`, `write`, `copy` …
@@ -115,7 +115,7 @@ pub enum ResultsError {
     },
     /// HDF5 failed.
     #[cfg(feature = "hdf5")]
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}: {}", path.display(), told_by_hdf5(&source.to_string()))]
     #[diagnostic(help("check the space on the disk and the permissions of the directory"))]
     Store {
         /// What was tried.
@@ -125,6 +125,15 @@ pub enum ResultsError {
         /// The cause.
         source: hdf5::Error,
     },
+}
+
+/// What HDF5 says, without addresses and times: the operating system's own words where it has them.
+#[cfg(feature = "hdf5")]
+fn told_by_hdf5(text: &str) -> &str {
+    let system = text.split_once("error message = '");
+    let system = system.and_then(|(_, rest)| Some(rest.split_once('\'')?.0));
+    let own = text.split(": time =").next().unwrap_or(text);
+    system.unwrap_or(own).trim()
 }
 
 impl ResultsError {
@@ -161,5 +170,18 @@ impl From<ResultsError> for ObserverError {
             doing: "writing results".into(),
             cause: Box::new(error),
         }
+    }
+}
+
+#[cfg(all(test, feature = "hdf5"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_an_error_of_hdf5_the_systems_words_are_told() {
+        let full = "H5Dwrite(): can't write data: file write failed: time = Fri Nov 27 05:05:39 2026\n, filename = 'a', errno = 28, error message = 'No space left on device', buf = 0x56";
+        assert_eq!(told_by_hdf5(full), "No space left on device");
+        let other = "H5Fopen(): unable to open file: bad superblock";
+        assert_eq!(told_by_hdf5(other), other);
     }
 }

@@ -6,6 +6,7 @@ pub mod conduction;
 pub mod contact;
 pub mod dimension;
 pub mod drag;
+pub mod figures;
 pub mod film;
 pub mod flow_range;
 pub mod gas;

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use calcine_physics::Vec3;
+use calcine_physics::figures::Brief;
 use thiserror::Error;
 
 use crate::checkpoint::StateFileError;
@@ -378,8 +379,7 @@ pub enum ControlError {
 #[error(
     "particle {id} has come to a radius of {radius} m and {mass} kg by what reacted in it: a surface wave \
      crosses it in {time} s, and the time step of contacts is {step} s; write a shorter `motion.motion_step`, \
-     or a larger `least_diameter` in the size of its material"
-)]
+     or a larger `least_diameter` in the size of its material", radius = Brief(*.radius), mass = Brief(*.mass), time = Brief(*.time), step = Brief(*.step))]
 pub struct TooLight {
     /// Its id.
     pub id: u64,

@@ -2,6 +2,7 @@
 
 use calcine_coupler::error::FailureKind;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::figures::Brief;
 use calcine_coupler::physics::kinetics::KineticsError;
 use thiserror::Error;
 
@@ -61,8 +62,7 @@ pub enum GasFailure {
     /// An exchange that is not finite, or with a negative coefficient.
     #[error(
         "an exchange of {drag_coefficient} kg/s, {drag_source} N, {heat_coefficient} W/K, {heat_source} W \
-         {place}; coefficients must be finite and not negative"
-    )]
+         {place}; coefficients must be finite and not negative", drag_coefficient = Brief(*.drag_coefficient), drag_source = Brief(*.drag_source), heat_coefficient = Brief(*.heat_coefficient), heat_source = Brief(*.heat_source))]
     Exchange {
         /// Drag coefficient in kg/s.
         drag_coefficient: f64,
@@ -87,8 +87,7 @@ pub enum GasFailure {
     /// A value that no gas has.
     #[error(
         "diverged: {field} of {value} {unit} {place}; shorter windows may help (`time.motion_window`, or `time.process_step` \
-         where the case has it)"
-    )]
+         where the case has it)", value = Brief(*.value))]
     OutOfRange {
         /// What the value is.
         field: &'static str,
@@ -102,8 +101,7 @@ pub enum GasFailure {
     /// Turbulence that is not positive.
     #[error(
         "diverged: turbulent energy of {energy} m^2/s^2 with a dissipation of {dissipation} m^2/s^3 {place}; \
-         shorter windows may help (`time.motion_window`, or `time.process_step` where the case has it)"
-    )]
+         shorter windows may help (`time.motion_window`, or `time.process_step` where the case has it)", energy = Brief(*.energy), dissipation = Brief(*.dissipation))]
     Turbulence {
         /// k in m²/s².
         energy: f64,

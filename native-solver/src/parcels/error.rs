@@ -1,5 +1,6 @@
 //! Parcels that cannot be made or moved.
 
+use calcine_coupler::physics::figures::Brief;
 use thiserror::Error;
 
 use crate::gas::NativeError;
@@ -53,8 +54,7 @@ pub enum ParcelError {
     /// Too many steps.
     #[error(
         "parcels of up to {speed} m/s need {steps} steps in a window of {span} s to keep to a Courant number of {courant}, more than {most}; \
-         shorten `time.motion_window`, or make cells larger"
-    )]
+         shorten `time.motion_window`, or make cells larger", speed = Brief(*.speed), span = Brief(*.span))]
     TooManySteps {
         /// Largest speed in m/s.
         speed: f64,

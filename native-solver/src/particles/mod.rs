@@ -13,6 +13,7 @@ use calcine_coupler::part::{
     Bed, DRAG_IMPULSE, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::periodic_motion::check_period;
+use calcine_coupler::physics::figures::Brief;
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
@@ -211,7 +212,9 @@ impl NativeParticles {
         let step = engine.contacts().step;
         if end <= begin {
             let message = format!(
-                "a window of {span} s holds no time step of {step} s; shorten `motion.motion_step`"
+                "a window of {} s holds no time step of {} s; shorten `motion.motion_step`",
+                Brief(span),
+                Brief(step)
             );
             return Err(self
                 .failure(FailureKind::Protocol, message)
