@@ -73,7 +73,8 @@ pub fn run() {
         ("0.5, 60 mm, 10 rpm", small.map(str::to_owned).to_vec()),
     ];
     let slopes = rows.map(|(name, set)| {
-        let slope = Slope::of(&parcels, (folder.path(), name), &set, 0.4);
+        let own = format!("parcels, {name}");
+        let slope = Slope::of(&parcels, (folder.path(), &own), &set, 0.4);
         slope.show(name);
         slope.0[0]
     });
