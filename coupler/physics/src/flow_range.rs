@@ -45,16 +45,13 @@ mod tests {
     use super::*;
     use crate::drag::DRAG_LAWS;
     use crate::heat_transfer::HEAT_TRANSFER_LAWS;
-    use crate::law::LawValues;
 
     #[test]
     fn ranges_are_of_positive_width_and_hold_void_fractions_of_beds() {
-        let drag = DRAG_LAWS
-            .iter()
-            .map(|law| (law.make)(&LawValues::default()).range());
+        let drag = DRAG_LAWS.iter().map(|law| law.by_default().range());
         let heat = HEAT_TRANSFER_LAWS
             .iter()
-            .map(|law| (law.make)(&LawValues::default()).range());
+            .map(|law| law.by_default().range());
         for range in drag.chain(heat) {
             let (low, high) = range.void_fraction;
             assert!(0.0 <= low && low < high && high <= 1.0, "{range:?}");

@@ -19,6 +19,8 @@ mod gidaspow;
 mod koch_hill;
 mod model;
 mod none;
+mod syamlal_obrien;
+mod tang;
 mod tenneti;
 mod wen_yu;
 
@@ -30,6 +32,8 @@ pub use gidaspow::Gidaspow;
 pub use koch_hill::KochHill;
 pub use model::Drag;
 pub use none::NoDrag;
+pub use syamlal_obrien::SyamlalOBrien;
+pub use tang::Tang;
 pub use tenneti::Tenneti;
 pub use wen_yu::WenYu;
 
@@ -45,20 +49,19 @@ pub static DRAG_LAWS: &[&LawEntry<dyn Drag>] = &[
     &koch_hill::LAW,
     &beetstra::LAW,
     &tenneti::LAW,
+    &tang::LAW,
+    &syamlal_obrien::LAW,
     &none::LAW,
 ];
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{LawValues, NONE};
+    use crate::law::NONE;
     use crate::local::LocalGas;
 
     fn laws() -> Vec<Box<dyn Drag>> {
-        DRAG_LAWS
-            .iter()
-            .map(|law| (law.make)(&LawValues::default()))
-            .collect()
+        DRAG_LAWS.iter().map(|law| law.by_default()).collect()
     }
 
     #[test]
@@ -79,14 +82,18 @@ mod tests {
 
     #[test]
     fn in_a_packed_bed_of_spheres_the_laws_differ_by_less_than_a_third() {
-        // All are fitted to the same beds: a wrong power of ε (2.2 or more at 0.45) shows.
+        // All but one, of suspensions that settle, are fitted to the same beds: a wrong power of ε (2.2 or more at 0.45) shows.
         for slip in [1e-3, 0.1, 1.0] {
             let gas = LocalGas::air(0.45, slip);
             let ergun = Ergun.coefficient(&gas, 1e-3);
             for law in laws().iter().filter(|law| law.name() != NONE) {
                 let ratio = law.coefficient(&gas, 1e-3) / ergun;
+                let least = match law.name() == syamlal_obrien::LAW.name {
+                    true => 0.6,
+                    false => 0.67,
+                };
                 assert!(
-                    (0.67..1.5).contains(&ratio),
+                    (least..1.5).contains(&ratio),
                     "{} at {slip}: {ratio}",
                     law.name()
                 );

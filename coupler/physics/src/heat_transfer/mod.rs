@@ -2,6 +2,7 @@
 
 mod gnielinski;
 mod gunn;
+mod li_mason;
 mod model;
 mod none;
 mod ranz_marshall;
@@ -9,6 +10,7 @@ mod wakao;
 
 pub use gnielinski::Gnielinski;
 pub use gunn::Gunn;
+pub use li_mason::LiMason;
 pub use model::HeatTransfer;
 pub use none::NoHeatTransfer;
 pub use ranz_marshall::RanzMarshall;
@@ -23,5 +25,6 @@ pub static HEAT_TRANSFER_LAWS: &[&LawEntry<dyn HeatTransfer>] = &[
     &wakao::LAW,
     &gnielinski::LAW,
     &ranz_marshall::LAW,
+    &li_mason::LAW,
     &none::LAW,
 ];
