@@ -463,7 +463,7 @@ fn a_sweep_that_is_stopped_does_not_print_a_line_that_resumes_one_run() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let series = folder.path().join("out/1000000-s/series.csv");
+    let series = folder.path().join("out/end=1000000s/series.csv");
     let begun = Instant::now();
     while !series.is_file() && begun.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(20));
@@ -473,8 +473,7 @@ fn a_sweep_that_is_stopped_does_not_print_a_line_that_resumes_one_run() {
     let output = child.wait_with_output().unwrap();
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(75), "{text}");
-    let said =
-        "the sweep is not complete and cannot be resumed: begin it again with another folder";
+    let said = "0 of 2 runs have ended; the same command keeps them and goes on with the others";
     assert!(text.contains(said) && !text.contains("--resume"), "{text}");
 }
 

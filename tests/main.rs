@@ -66,6 +66,7 @@ mod sphere_arrays;
 mod stock_solver;
 mod stopped;
 mod support;
+mod sweeps;
 mod test_programs;
 mod time_splitting;
 mod told;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use calcine_wire::SolverNetwork;
+use rustix::process::{Signal, set_parent_process_death_signal};
 
 use super::failure::Failure;
 use super::tuning_line::Tuning;
@@ -113,6 +114,10 @@ pub(super) fn run(
     hand_over: fn() -> Failure,
 ) -> Result<u8, Failure> {
     let (arguments, case) = arguments.completed()?;
+    if arguments.with_parent {
+        // Where the system has no such thing the run goes on by itself.
+        let _ = set_parent_process_death_signal(Some(Signal::TERM));
+    }
     (commands(&case, &arguments.set)?.run)(&arguments, &case, network, hand_over)
 }
 

@@ -10,6 +10,7 @@ pub mod doctor;
 mod execute;
 mod failure;
 mod inputs;
+mod jobs;
 mod kinds;
 mod new;
 mod parallel;
@@ -23,6 +24,7 @@ mod schema;
 mod shell;
 mod signals;
 mod sweep;
+mod sweep_table;
 mod tune;
 mod tuning_line;
 

@@ -12,6 +12,7 @@ use super::failure::Failure;
 use super::inputs::holds_files;
 use super::shell::word;
 use super::signals::SignalThread;
+use super::sweep_table::SweepTable;
 use super::tuning_line::Tuning;
 use super::{check, compare, run, sweep};
 use crate::case::plant::{PlantCase, read_plant};
@@ -349,54 +350,46 @@ pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
     if let Some(path) = &arguments.table {
         sweep::table_is_free(path)?;
     }
-    let go_on = begin_again("sweep", &out);
-    let mut head = names;
-    let mut rows = Vec::new();
-    let mut worst = exit::OK;
-    for settings in &combinations {
-        say(settings.join("  "))?;
-        let case = read(&arguments.case, settings)?;
-        let place = out.join(sweep::folder_name(settings));
-        let (code, summary) =
-            into_folder(&case, &place, Begin::default(), arguments.quiet, &go_on)?;
-        let Some(summary) = summary else {
-            return Ok(code);
-        };
-        worst = if code == exit::OK { worst } else { code };
-        let values = settings.iter();
-        let values = values.filter_map(|one| Some(one.split_once('=')?.1.to_owned()));
-        let mut row: Vec<String> = values.collect();
-        row.push(format!("{:.2}", summary.wall_time_s));
-        for (name, quantity) in &summary.quantities {
-            let title = format!("{name} {}", quantity.unit);
-            if rows.is_empty() {
-                if row.len() == head.len() + 1 {
-                    head.push("s".into());
-                }
-                head.push(title);
-            }
-            let value = quantity.value;
-            row.push(value.map_or("none".into(), |value| format!("{value:.7}")));
-        }
-        if let Some(mode) = &summary.stability {
-            if rows.is_empty() {
-                head.extend(["growth rate 1/s".to_owned(), "period s".into()]);
-            }
-            let period = mode.period_s;
-            row.push(format!("{:.5e}", mode.growth_rate_per_s));
-            row.push(period.map_or("none".into(), |period| format!("{period:.2}")));
-        }
-        rows.push(row);
-    }
-    let mut table = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(head.len()));
-    for row in rows {
-        table.push_str(&format!("| {} |\n", row.join(" | ")));
-    }
+    let jobs = sweep::jobs(&out, combinations);
+    let options = Vec::new();
+    let table = |points: &[sweep::Point<'_>]| sweep_table(&names, points);
+    let (ends, table) = arguments.follow(&jobs, (&out, options), table)?;
     // Written before anything is printed: standard output may be lost.
-    let written = arguments.table.as_ref().map(|path| {
-        std::fs::write(path, &table).map_err(|cause| Failure::unwritable(path, "--table", &cause))
-    });
-    say(table.trim_end())?;
-    written.transpose()?;
-    Ok(worst)
+    let written = arguments.write_table(&table);
+    say(table.markdown())?;
+    written?;
+    Ok(sweep::exit_code(&ends))
+}
+
+/// The table of a sweep: the settings, the wall time, the quantities, and what the plant does.
+fn sweep_table(names: &[String], points: &[sweep::Point<'_>]) -> Result<SweepTable, Failure> {
+    let mut table = SweepTable {
+        header: names.to_vec(),
+        rows: Vec::new(),
+    };
+    let mut verdicts = Vec::new();
+    for point in points {
+        let mut row = sweep::values(&point.job.settings);
+        if point.end.is_complete() {
+            let summary = PlantSummary::read(&point.job.folder);
+            let summary = summary.map_err(|error| Failure::told(exit::OTHER, &error))?;
+            table.put(&mut row, "s", format!("{:.2}", summary.wall_time_s));
+            for (name, quantity) in &summary.quantities {
+                let value = quantity.value;
+                let value = value.map_or("none".into(), |value| format!("{value:.7}"));
+                table.put(&mut row, &format!("{name} {}", quantity.unit), value);
+            }
+            if let Some(mode) = &summary.stability {
+                let rate = format!("{:.5e}", mode.growth_rate_per_s);
+                table.put(&mut row, "growth rate 1/s", rate);
+                let period = mode.period_s;
+                let period = period.map_or("none".into(), |period| format!("{period:.2}"));
+                table.put(&mut row, "period s", period);
+            }
+        }
+        verdicts.push(sweep::ending(point.end.code));
+        table.rows.push(row);
+    }
+    table.close("ended", verdicts);
+    Ok(table)
 }

@@ -82,7 +82,9 @@ fn section(command: &Command) -> String {
     let about = about.trim_end();
     let stop = if about.ends_with('.') { "" } else { "." };
     let mut page = format!("\n## `calcine {name}`\n\n{about}{stop}\n");
-    let shown = |argument: &&Arg| !["help", "version"].contains(&argument.get_id().as_str());
+    let shown = |argument: &&Arg| {
+        !argument.is_hide_set() && !["help", "version"].contains(&argument.get_id().as_str())
+    };
     let positional = command.get_positionals().filter(shown);
     let options =
         command

@@ -55,6 +55,9 @@ pub(super) struct Arguments {
     /// Writes a checkpoint and stops after this wall time, for example `23h30m`, `90 s`, or a plain number of seconds.
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     pub(super) stop_after: Option<Duration>,
+    /// Stops with a checkpoint where the process that started it ends: of the runs of a sweep.
+    #[arg(long, hide = true)]
+    pub(super) with_parent: bool,
     /// Ends with exit code 6 where a complete run has warnings: of its case, as `check` tells them, or of what left the
     /// range of a law or did not converge.
     #[arg(long)]

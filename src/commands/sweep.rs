@@ -1,23 +1,24 @@
 //! `calcine sweep CASE --set key=a,b,c`.
 
-use std::fmt::Write as _;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::console::{printed, say};
-use super::continuation::begin_again;
-use super::execute::{self, Settings};
 use super::failure::Failure;
-use super::inputs::{own_or_new, read_and_prepare, read_case, results_folder};
-use super::parallel::Transport;
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
+use super::inputs::{own_or_new, read_case, results_folder};
+use super::jobs::{Job, JobEnd, Jobs};
+use super::sweep_table::SweepTable;
+use crate::assembly::{GasBackend, ParticleBackend};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;
 use crate::results::read::Series;
-use crate::results::{ResultsError, Summary, Verdict, unoccupied};
+use crate::results::{CaseIdentity, ResultsError, SUMMARY, Summary, Verdict, same_case};
 
 /// Runs a case once for each combination of values and prints one table.
+///
+/// The same command again keeps the runs that have ended and goes on with those that have not.
 ///
 /// `--reference KEY=VALUE` names the runs that the others are compared with: each run against the
 /// one that differs from it in that key alone, particle by particle.
@@ -43,6 +44,9 @@ pub(super) struct Arguments {
     /// Folder of the sweep [default: results/NAME-sweep].
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Runs at once, each with its share of the cores.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: u16,
     /// Also writes the table to this file, as Markdown.
     #[arg(long, value_name = "FILE")]
     pub(super) table: Option<PathBuf>,
@@ -74,15 +78,6 @@ pub(super) fn combinations(set: &[String]) -> Result<(Vec<String>, Vec<Vec<Strin
     Ok((keys.collect(), combine(&axes)))
 }
 
-/// One run of the sweep.
-struct Point {
-    /// `key=value`, in the order of `--set`.
-    settings: Vec<String>,
-    folder: PathBuf,
-    /// The exit code of its run.
-    code: u8,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let axes = arguments
         .set
@@ -102,41 +97,112 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         folder.push("-sweep");
         folder.into()
     });
-    let combinations = combine(&axes);
+    let jobs = jobs(&out, combine(&axes));
     // Every case and folder is checked before the first one runs, and that the table can be written after the last one.
     if let Some(path) = &arguments.table {
         table_is_free(path)?;
     }
-    for settings in &combinations {
-        read_case(&arguments.case, settings)?;
+    for job in &jobs {
+        let case = read_case(&arguments.case, &job.settings)?;
+        if job.folder.join(SUMMARY).exists() {
+            let kept = Summary::read(&job.folder);
+            let same = kept
+                .and_then(|kept| same_case(&job.folder, &kept.case.hash, CaseIdentity::of(&case)));
+            same.map_err(|error| Failure::told(exit::CASE, &error))?;
+        }
     }
-    for settings in &combinations {
-        let free = unoccupied(&out.join(folder_name(settings)));
-        free.map_err(|error| Failure::told(exit::CASE, &error))?;
+    let mut options = Vec::new();
+    for (option, name) in [
+        ("--gas", arguments.gas.name()),
+        ("--particles", arguments.particles.name()),
+    ] {
+        options.extend([option.to_owned(), name.to_owned()]);
     }
-    let go_on = begin_again("sweep", &out);
-    let mut points = Vec::new();
-    for settings in combinations {
-        let folder = out.join(folder_name(&settings));
-        say(settings.join("  "))?;
-        let code = one(arguments, &settings, &folder, &go_on)?;
-        points.push(Point {
-            settings,
-            folder,
-            code,
-        });
+    if arguments.jobs > 1 {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = (cores / usize::from(arguments.jobs)).max(1);
+        options.extend(["--threads".to_owned(), threads.to_string()]);
     }
-    let table = table(&points, &axes, reference, arguments.span)?;
+    let table = |points: &[Point]| table(points, &axes, reference, arguments.span);
+    let (ends, table) = arguments.follow(&jobs, (&out, options), table)?;
     // Written before anything is printed: standard output may be lost.
-    let written = arguments.table.as_ref().map(|path| {
-        std::fs::write(path, &table).map_err(|cause| Failure::unwritable(path, "--table", &cause))
-    });
-    say(&table)?;
-    written.transpose()?;
-    Ok(match points.iter().any(|point| point.code != exit::OK) {
-        true => exit::OUTSIDE_BANDS,
-        false => exit::OK,
-    })
+    let written = arguments.write_table(&table);
+    say(table.markdown())?;
+    written?;
+    Ok(exit_code(&ends))
+}
+
+/// One run of the sweep that has ended.
+pub(super) struct Point<'a> {
+    /// Which one.
+    pub(super) job: &'a Job,
+    /// How.
+    pub(super) end: &'a JobEnd,
+}
+
+impl Arguments {
+    /// Follows all runs, and keeps the table of those that have ended in the folder of the sweep.
+    pub(super) fn follow(
+        &self,
+        jobs: &[Job],
+        (out, options): (&Path, Vec<String>),
+        table: impl Fn(&[Point<'_>]) -> Result<SweepTable, Failure>,
+    ) -> Result<(Vec<JobEnd>, SweepTable), Failure> {
+        let runs = Jobs {
+            case: &self.case,
+            options,
+            at_once: self.jobs.into(),
+            quiet: self.quiet,
+        };
+        let mut ended: Vec<Option<JobEnd>> = vec![None; jobs.len()];
+        let so_far = |ended: &[Option<JobEnd>]| {
+            let pairs = jobs.iter().zip(ended);
+            let points = pairs.filter_map(|(job, end)| {
+                Some(Point {
+                    job,
+                    end: end.as_ref()?,
+                })
+            });
+            table(&points.collect::<Vec<_>>())
+        };
+        let ends = runs.follow(jobs, |place, end| {
+            let settings = jobs[place].settings.join("  ");
+            say(format_args!("{settings}  {}", ending(end.code)))?;
+            eprint!("{}", end.told);
+            ended[place] = Some(end.clone());
+            so_far(&ended)?.write(out)
+        })?;
+        Ok((ends, so_far(&ended)?))
+    }
+
+    /// Writes the table to the file that was asked for.
+    pub(super) fn write_table(&self, table: &SweepTable) -> Result<(), Failure> {
+        let Some(path) = &self.table else {
+            return Ok(());
+        };
+        std::fs::write(path, table.markdown())
+            .map_err(|cause| Failure::unwritable(path, "--table", &cause))
+    }
+}
+
+/// The exit code of a sweep: that of the first run that failed, else whether all are within their bands.
+pub(super) fn exit_code(ends: &[JobEnd]) -> u8 {
+    let failed = ends.iter().find(|end| !end.is_complete());
+    let outside = ends.iter().any(|end| end.code == exit::OUTSIDE_BANDS);
+    match failed {
+        Some(end) => end.code,
+        None if outside => exit::OUTSIDE_BANDS,
+        None => exit::OK,
+    }
+}
+
+/// How a run ended, in words.
+pub(super) fn ending(code: u8) -> String {
+    match code {
+        exit::OK => "complete".into(),
+        exit::OUTSIDE_BANDS => "complete, outside its bands".into(),
+        code => format!("failed, exit code {code}"),
+    }
 }
 
 /// Refuses a file for the table that cannot be written, or that holds something else; it stays as it is, or absent.
@@ -152,37 +218,6 @@ pub(super) fn table_is_free(path: &Path) -> Result<(), Failure> {
         false => Ok(()),
     });
     tried.map_err(|cause| Failure::unwritable(path, "--table", &cause))
-}
-
-fn one(
-    arguments: &Arguments,
-    settings: &[String],
-    folder: &Path,
-    go_on: &str,
-) -> Result<u8, Failure> {
-    let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
-    let pairing = Pairing {
-        gas: arguments.gas,
-        particles: arguments.particles,
-    };
-    let settings = Settings {
-        starts: &SolverStarts::of(&case, pairing),
-        transport: Transport::default(),
-        pairing,
-        out: folder,
-        resume: false,
-        from: None,
-        progress: !arguments.quiet,
-        stop_after: None,
-        strict: false,
-        recorded: None,
-        go_on,
-    };
-    let done = execute::execute(&case, &prepared, &settings)?;
-    if done.code == exit::CHECKPOINTED {
-        return Err(Failure::new(done.code, done.text));
-    }
-    Ok(done.code)
 }
 
 /// `key=a,b,c` as `key=a`, `key=b`, `key=c`; commas inside brackets or quotes do not separate.
@@ -236,99 +271,108 @@ fn combine(axes: &[Vec<String>]) -> Vec<Vec<String>> {
     })
 }
 
-/// A folder name made of the values.
-pub(super) fn folder_name(settings: &[String]) -> String {
-    let values = settings.iter().map(|setting| {
-        let value = setting
-            .split_once('=')
-            .map_or(setting.as_str(), |(_, value)| value);
-        value
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || c == '.' {
-                    c
-                } else {
-                    '-'
-                }
-            })
-            .collect()
-    });
-    values.collect::<Vec<String>>().join("_")
+/// Longest name of a folder in characters.
+const LONGEST: usize = 120;
+
+/// The runs of all combinations, each in a folder of its own.
+pub(super) fn jobs(out: &Path, combinations: Vec<Vec<String>>) -> Vec<Job> {
+    let mut taken = BTreeSet::new();
+    let numbered = combinations.into_iter().enumerate();
+    let job = |(place, settings): (usize, Vec<String>)| {
+        let mut name = folder_name(&settings);
+        if !taken.insert(name.clone()) {
+            name = format!("{name},{}", place + 1);
+            taken.insert(name.clone());
+        }
+        let folder = out.join(name);
+        Job { settings, folder }
+    };
+    numbered.map(job).collect()
 }
 
-/// The table as Markdown: the settings, the wall time, the quantities' last values, and with a
+/// A folder name made of the last words of the keys and the values: `diameter=4mm,velocity=1.5mps`.
+fn folder_name(settings: &[String]) -> String {
+    let part = |setting: &String| {
+        let (key, value) = setting.split_once('=').unwrap_or(("", setting));
+        let key = key.rsplit('.').next().unwrap_or(key);
+        let plain = |letter: char| match letter {
+            '/' => Some('p'),
+            ' ' | '"' | '^' | '\'' => None,
+            letter if letter.is_alphanumeric() || "._+-".contains(letter) => Some(letter),
+            _ => Some('-'),
+        };
+        let words = [key, value].map(|text| text.chars().filter_map(plain).collect::<String>());
+        words.join("=")
+    };
+    let name = settings.iter().map(part).collect::<Vec<String>>().join(",");
+    name.chars().take(LONGEST).collect()
+}
+
+/// The table: the settings, the wall time, the quantities' last values, and with a
 /// reference the largest deviation of each particle's temperature in % of the reference's span.
 fn table(
-    points: &[Point],
+    points: &[Point<'_>],
     axes: &[Vec<String>],
     reference: Option<&str>,
     span: Option<f64>,
-) -> Result<String, Failure> {
+) -> Result<SweepTable, Failure> {
     let failed = |error: &ResultsError| Failure::told(exit::OTHER, error);
-    let (mut rows, mut verdicts): (Vec<Vec<String>>, Vec<String>) = Default::default();
-    let mut header: Vec<String> = axes
-        .iter()
-        .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key.to_owned()))
-        .collect();
-    header.push("loop s".into());
-    for point in points {
-        let series = Series::read(&point.folder).map_err(|error| failed(&error))?;
-        let summary = Summary::read(&point.folder).map_err(|error| failed(&error))?;
-        let mut row: Vec<String> = point
-            .settings
+    let mut table = SweepTable {
+        header: axes
             .iter()
-            .filter_map(|setting| setting.split_once('=').map(|(_, value)| value.to_owned()))
-            .collect();
+            .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key.to_owned()))
+            .collect(),
+        rows: Vec::new(),
+    };
+    table.header.push("loop s".into());
+    let mut verdicts = Vec::new();
+    for point in points {
+        let mut row = values(&point.job.settings);
+        if !point.end.is_complete() {
+            verdicts.push(ending(point.end.code));
+            table.rows.push(row);
+            continue;
+        }
+        let folder = &point.job.folder;
+        let series = Series::read(folder).map_err(|error| failed(&error))?;
+        let summary = Summary::read(folder).map_err(|error| failed(&error))?;
         let wall = &summary.wall_time_s;
         row.push(format!("{:.3}", wall.total - wall.output));
-        let against = reference.map(|value| partner(points, point, value));
+        let against = reference.and_then(|value| partner(points, point, value));
         match against {
-            Some(Some(partner)) => {
-                let base = Series::read(&partner.folder).map_err(|error| failed(&error))?;
+            Some(partner) => {
+                let base = Series::read(&partner.job.folder).map_err(|error| failed(&error))?;
                 let Deviation { percent, .. } = deviation(&base, &series, span);
                 // Of more than 1000 particles no temperatures are recorded one by one.
                 let largest = percent.iter().copied().reduce(f64::max).unwrap_or(f64::NAN);
-                if header.len() < row.len() + percent.len() + 1 {
-                    header.truncate(row.len());
-                    header.extend((1..=percent.len()).map(|p| format!("p{p} %")));
-                    header.push("largest %".into());
+                for (number, value) in percent.iter().enumerate() {
+                    table.put(
+                        &mut row,
+                        &format!("p{} %", number + 1),
+                        format!("{value:.3}"),
+                    );
                 }
-                row.extend(percent.iter().map(|value| format!("{value:.3}")));
-                row.push(format!("{largest:.3}"));
+                table.put(&mut row, "largest %", format!("{largest:.3}"));
             }
-            _ => {
+            None => {
                 for (name, quantity) in &summary.quantities {
-                    let column = format!("{name} {}", quantity.unit);
-                    // Runs of other quantities have other columns.
-                    let place = header.iter().position(|one| *one == column);
-                    let place = place.unwrap_or_else(|| {
-                        header.push(column);
-                        header.len() - 1
-                    });
-                    row.resize(row.len().max(place + 1), String::new());
-                    row[place] = printed(quantity.value.unwrap_or(f64::NAN));
+                    let value = printed(quantity.value.unwrap_or(f64::NAN));
+                    table.put(&mut row, &format!("{name} {}", quantity.unit), value);
                 }
             }
         }
         verdicts.push(verdict(&summary));
-        rows.push(row);
+        table.rows.push(row);
     }
-    let columns = rows.iter().map(Vec::len).fold(header.len(), usize::max);
-    header.resize(columns, String::new());
-    header.push("verdict".into());
-    for (row, verdict) in rows.iter_mut().zip(verdicts) {
-        row.resize(columns, String::new());
-        row.push(verdict);
-    }
-    let mut text = format!(
-        "| {} |\n|{}\n",
-        header.join(" | "),
-        "---|".repeat(header.len())
-    );
-    for row in rows {
-        let _ = writeln!(text, "| {} |", row.join(" | "));
-    }
-    Ok(text)
+    table.close("verdict", verdicts);
+    Ok(table)
+}
+
+/// The values of settings.
+pub(super) fn values(settings: &[String]) -> Vec<String> {
+    let values = settings.iter();
+    let values = values.filter_map(|setting| Some(setting.split_once('=')?.1.to_owned()));
+    values.collect()
 }
 
 /// How a run stands: which quantities are outside their bands, and how many kinds of warning it has.
@@ -351,10 +395,15 @@ fn verdict(summary: &Summary) -> String {
     text
 }
 
-/// The point that differs from `point` only in having the reference's value.
-fn partner<'a>(points: &'a [Point], point: &Point, reference: &str) -> Option<&'a Point> {
+/// The run that differs from `point` only in having the reference's value, where that is complete.
+fn partner<'a>(
+    points: &'a [Point<'a>],
+    point: &Point<'_>,
+    reference: &str,
+) -> Option<&'a Point<'a>> {
     let key = reference.split_once('=').map(|(key, _)| key)?;
     let wanted: Vec<&str> = point
+        .job
         .settings
         .iter()
         .map(|setting| {
@@ -362,12 +411,10 @@ fn partner<'a>(points: &'a [Point], point: &Point, reference: &str) -> Option<&'
             if same { reference } else { setting.as_str() }
         })
         .collect();
-    points.iter().find(|other| {
-        other
-            .settings
-            .iter()
-            .map(String::as_str)
-            .eq(wanted.iter().copied())
+    let mut complete = points.iter().filter(|other| other.end.is_complete());
+    complete.find(|other| {
+        let settings = other.job.settings.iter().map(String::as_str);
+        settings.eq(wanted.iter().copied())
     })
 }
 
@@ -383,6 +430,28 @@ mod tests {
         assert_eq!(split("a=\"x,y\""), ["a=\"x,y\""]);
         assert!(axis("nothing").is_err());
         assert!(axis("a=1,2,1").is_err());
+    }
+
+    #[test]
+    fn folders_are_named_by_keys_and_values_and_none_twice() {
+        let settings = |one: &str, two: &str| vec![one.to_owned(), two.to_owned()];
+        let named = jobs(
+            Path::new("out"),
+            vec![
+                settings("particles.beads.diameter=4 mm", "gas.velocity=\"1.5 m/s\""),
+                settings("a.x=[1]", "b.x=2"),
+                settings("a.x=(1)", "c.x=2"),
+            ],
+        );
+        let names = named.iter().map(|job| job.folder.to_str().unwrap());
+        assert_eq!(
+            names.collect::<Vec<_>>(),
+            [
+                "out/diameter=4mm,velocity=1.5mps",
+                "out/x=-1-,x=2",
+                "out/x=-1-,x=2,3"
+            ]
+        );
     }
 
     #[test]

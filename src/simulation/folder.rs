@@ -180,7 +180,7 @@ fn remove_empty(folders: &[PathBuf]) {
 }
 
 /// True where a run was begun in a folder before.
-pub(super) fn begun_before(out: &Path) -> bool {
+pub(crate) fn begun_before(out: &Path) -> bool {
     out.join(LOCK).is_file()
 }
 

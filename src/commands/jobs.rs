@@ -1,0 +1,183 @@
+//! Runs of one case with several settings, each a process of its own, so many at once.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use calcine_coupler::supervisor::Interrupts;
+use rustix::process::{Pid, Signal, kill_process};
+
+use super::failure::Failure;
+use super::signals::SignalThread;
+use crate::exit;
+use crate::results::SUMMARY;
+use crate::simulation::begun_before;
+
+/// How often runs are looked at.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// One run.
+#[derive(Clone, Debug)]
+pub(super) struct Job {
+    /// `key=value` of each key that is set.
+    pub(super) settings: Vec<String>,
+    /// Its results folder.
+    pub(super) folder: PathBuf,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub(super) struct JobEnd {
+    /// Exit code.
+    pub(super) code: u8,
+    /// What it wrote to standard error, where that was not shown at once.
+    pub(super) told: String,
+}
+
+impl JobEnd {
+    /// True where it came to the end of its case.
+    pub(super) fn is_complete(&self) -> bool {
+        [exit::OK, exit::OUTSIDE_BANDS].contains(&self.code)
+    }
+}
+
+/// How runs are made.
+#[derive(Debug)]
+pub(super) struct Jobs<'a> {
+    /// The case file.
+    pub(super) case: &'a Path,
+    /// Options that all have.
+    pub(super) options: Vec<String>,
+    /// Most of them at once.
+    pub(super) at_once: usize,
+    /// Shows no progress bar; of several at once none is shown.
+    pub(super) quiet: bool,
+}
+
+/// A run under way.
+struct Running {
+    place: usize,
+    child: Child,
+    told: Option<JoinHandle<String>>,
+}
+
+impl Jobs<'_> {
+    /// Follows all runs to their ends, and tells of each as it ends. One that came to its end before is kept, one that was begun goes on,
+    /// and one that fails ends no other. An interrupt has each leave a checkpoint, and is an error.
+    pub(super) fn follow(
+        &self,
+        jobs: &[Job],
+        mut ended: impl FnMut(usize, &JobEnd) -> Result<(), Failure>,
+    ) -> Result<Vec<JobEnd>, Failure> {
+        let interrupts = Interrupts::default();
+        let _signals = SignalThread::start(&interrupts, None)?;
+        let mut ends: Vec<Option<JobEnd>> = vec![None; jobs.len()];
+        let mut running: Vec<Running> = Vec::new();
+        let (mut next, mut passed_on) = (0, 0);
+        while next < jobs.len() || !running.is_empty() {
+            let count = interrupts.count();
+            if count > passed_on {
+                passed_on = count;
+                running.iter().for_each(|one| stop(&one.child));
+            }
+            if count > 0 && running.is_empty() {
+                break;
+            }
+            while count == 0 && running.len() < self.at_once && next < jobs.len() {
+                running.push(self.start(next, &jobs[next])?);
+                next += 1;
+            }
+            let mut going = Vec::new();
+            for mut one in running {
+                let Some(status) = one.child.try_wait().map_err(|cause| unheard(&cause))? else {
+                    going.push(one);
+                    continue;
+                };
+                let end = JobEnd {
+                    code: code_of(status),
+                    told: one
+                        .told
+                        .map_or(String::new(), |told| told.join().unwrap_or_default()),
+                };
+                if end.code != exit::CHECKPOINTED {
+                    ended(one.place, &end)?;
+                }
+                ends[one.place] = Some(end);
+            }
+            running = going;
+            thread::sleep(LOOK);
+        }
+        let whole = ends
+            .iter()
+            .flatten()
+            .filter(|end| end.code != exit::CHECKPOINTED);
+        let whole = whole.count();
+        if whole < jobs.len() {
+            let message = format!(
+                "stopped: {whole} of {} runs have ended; the same command keeps them and goes on with the others",
+                jobs.len()
+            );
+            return Err(Failure::new(exit::CHECKPOINTED, message));
+        }
+        Ok(ends.into_iter().flatten().collect())
+    }
+
+    fn start(&self, place: usize, job: &Job) -> Result<Running, Failure> {
+        let program = std::env::current_exe().map_err(|cause| unheard(&cause))?;
+        let alone = self.at_once == 1;
+        let mut command = Command::new(program);
+        command.arg("run").arg(self.case).arg("--with-parent");
+        command.args(&self.options).arg("--out").arg(&job.folder);
+        for setting in &job.settings {
+            command.args(["--set", setting]);
+        }
+        if self.quiet || !alone {
+            command.arg("--quiet");
+        }
+        // A run that came to its end says so and ends.
+        if begun_before(&job.folder) || job.folder.join(SUMMARY).exists() {
+            command.arg("--resume");
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::null());
+        command.stderr(if alone {
+            Stdio::inherit()
+        } else {
+            Stdio::piped()
+        });
+        // In a group of its own: Ctrl-C comes to it by way of this process, once.
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn().map_err(|cause| unheard(&cause))?;
+        let told = child.stderr.take().map(|mut stderr| {
+            thread::spawn(move || {
+                let mut text = Vec::new();
+                // What could be read is what there is to tell.
+                let _ = stderr.read_to_end(&mut text);
+                String::from_utf8_lossy(&text).into_owned()
+            })
+        });
+        Ok(Running { place, child, told })
+    }
+}
+
+/// Has a run leave a checkpoint.
+fn stop(child: &Child) {
+    let id = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+    if let Some(id) = id {
+        // One that has ended meanwhile needs none.
+        let _ = kill_process(id, Signal::TERM);
+    }
+}
+
+fn code_of(status: ExitStatus) -> u8 {
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    code.unwrap_or(exit::OTHER)
+}
+
+fn unheard(cause: &std::io::Error) -> Failure {
+    Failure::new(
+        exit::OTHER,
+        format!("a run cannot be started or followed: {cause}"),
+    )
+}
