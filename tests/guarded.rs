@@ -172,19 +172,6 @@ fn a_run_whose_lock_was_removed_is_not_joined_by_another() {
 #[test]
 fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
     let folder = tempfile::tempdir().unwrap();
-    let text = fs::read_to_string(good("moving")).unwrap();
-    let grid = text
-        .lines()
-        .find(|line| line.starts_with("place = "))
-        .unwrap();
-    let text = text.replace(grid, "place = { file = \"bead.csv\" }");
-    let case = folder.path().join("moving.toml");
-    fs::write(&case, text).unwrap();
-    fs::copy(
-        good("moving").with_file_name("plate.stl"),
-        folder.path().join("plate.stl"),
-    )
-    .unwrap();
     for (name, meant) in [
         ("diameter [mm]", "name it `diameter`"),
         ("diameter_m", "name it `diameter`"),
@@ -201,13 +188,14 @@ fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
         ("angular velocity", "name angular velocities `omegax`"),
         ("initial particle mass [g]", "name it `mass`"),
         ("dp", "name it `diameter`"),
+        ("Diamètre", "name it `diameter`"),
+        ("sphere size (mm)", "name it `diameter`"),
+        ("weight", "`weight` of the population"),
         ("rho [kg/m3]", "name it `density`"),
     ] {
         let rows = format!("x,y,z,{name}\n0.005,0.005,0.29,1\n");
-        fs::write(folder.path().join("bead.csv"), rows).unwrap();
-        let checked = calcine(&["check", "moving.toml"], folder.path());
-        let told = String::from_utf8_lossy(&checked.stderr).into_owned();
-        assert_eq!(checked.status.code(), Some(2), "{name}: {told}");
+        let (code, told) = checked(folder.path(), "bead.csv", &rows);
+        assert_eq!(code, Some(2), "{name}: {told}");
         assert!(told.contains(meant), "{name}: {told}");
     }
     for name in [
@@ -224,11 +212,97 @@ fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
         "p",
     ] {
         let rows = format!("x,y,z,{name}\n0.005,0.005,0.29,1\n");
-        fs::write(folder.path().join("bead.csv"), rows).unwrap();
-        let checked = calcine(&["check", "moving.toml"], folder.path());
-        let told = String::from_utf8_lossy(&checked.stderr);
-        assert!(checked.status.success(), "{name}: {told}");
+        let (code, told) = checked(folder.path(), "bead.csv", &rows);
+        assert_eq!(code, Some(0), "{name}: {told}");
     }
+}
+
+/// A case whose bead is placed by a file, in a folder with its STL.
+fn of_file(folder: &Path, file: &str) -> PathBuf {
+    let text = fs::read_to_string(good("moving")).unwrap();
+    let mut lines = text.lines();
+    let grid = lines.find(|line| line.starts_with("place = ")).unwrap();
+    let text = text.replace(grid, &format!("place = {{ file = \"{file}\" }}"));
+    let case = folder.join("of-file.toml");
+    fs::write(&case, text).unwrap();
+    let plate = good("moving").with_file_name("plate.stl");
+    fs::copy(plate, folder.join("plate.stl")).unwrap();
+    case
+}
+
+fn checked(folder: &Path, file: &str, content: &str) -> (Option<i32>, String) {
+    of_file(folder, file);
+    fs::write(folder.join(file), content).unwrap();
+    let output = calcine(&["check", "of-file.toml"], folder);
+    let told = [&output.stdout[..], &output.stderr[..]].concat();
+    (output.status.code(), String::from_utf8(told).unwrap())
+}
+
+#[test]
+fn check_tells_what_is_read_of_a_file_and_what_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = "x,y,z,volume,Temperature\n0.005,0.005,0.29,1,310\n";
+    let (code, told) = checked(folder.path(), "bed.csv", rows);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(
+        told.contains("`bead` from bed.csv: x, y, z, temperature; not read: volume"),
+        "{told}"
+    );
+    assert!(!told.contains("degrees Celsius"), "{told}");
+    let rows = "x,y,z,temperature\n0.005,0.005,0.29,77\n";
+    let (code, told) = checked(folder.path(), "bed.csv", rows);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(
+        told.contains("line 2 has a temperature of 77 K in a gas of 300 K"),
+        "{told}"
+    );
+}
+
+#[test]
+fn dumps_are_known_by_their_content_and_one_that_is_cut_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let snapshot = |step: u64, names: &str| {
+        format!(
+            "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\nITEM: ATOMS {names}\n1 0.005 0.005 0.29 0.001\n"
+        )
+    };
+    let whole = snapshot(0, "id x y z radius");
+    let (code, told) = checked(folder.path(), "bed.txt", &whole);
+    assert_eq!(code, Some(0), "{told}");
+    let cut = format!("{whole}ITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n1\n");
+    let (code, told) = checked(folder.path(), "bed.dump", &cut);
+    assert_eq!(code, Some(2), "{told}");
+    assert!(
+        told.contains("timestep 100 ends before its atoms"),
+        "{told}"
+    );
+    for name in ["r", "c_radius", "c_Temp"] {
+        let named = snapshot(0, &format!("id x y z {name}"));
+        let (code, told) = checked(folder.path(), "bed.dump", &named);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains("is not read"), "{told}");
+    }
+}
+
+#[test]
+fn frozen_spheres_in_one_place_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("bed.csv"),
+        "x,y,z\n0.01,0.01,0.02\n0.01,0.01,0.02\n",
+    )
+    .unwrap();
+    let text = fs::read_to_string(shipped("heated-column")).unwrap();
+    let grid = text
+        .lines()
+        .find(|line| line.starts_with("place = "))
+        .unwrap();
+    let text = text.replace(grid, "place = { file = \"bed.csv\" }");
+    fs::write(folder.path().join("case.toml"), text).unwrap();
+    let output = calcine(&["check", "case.toml"], folder.path());
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("overlap"), "{told}");
 }
 
 #[test]
@@ -265,6 +339,27 @@ fn a_bed_at_the_temperature_of_a_gas_that_is_held_closes() {
     let energy = &summary.ledger.lines["energy"];
     assert!(energy.relative_error > 1e-3, "{energy:?}");
     assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
+}
+
+/// Without slip there is no drag, whatever the law.
+#[test]
+fn a_sphere_at_rest_is_in_the_range_of_a_law_of_drag() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let set = [
+        "time.end=0.01 s",
+        "laws.drag.law=di-felice",
+        "particles[0].velocity=\"0 0 0 m/s\"",
+    ];
+    program::run(&shipped("settling-sphere"), &out, &[], &set);
+    let warnings = Summary::read(&out).unwrap().warnings;
+    assert!(!warnings.contains_key("drag.reynolds"), "{warnings:?}");
+    let case = ValidCase::open(&shipped("settling-sphere"), &set.map(str::to_owned));
+    let told = case.unwrap().case.warnings;
+    assert!(
+        !told.iter().any(|one| one.contains("law of drag")),
+        "{told:?}"
+    );
 }
 
 #[test]

@@ -306,6 +306,7 @@ impl Closures {
                     let p = chunk * CHUNK + row;
                     let local = self.local(p, sampled_gas, particles, acceleration)?;
                     let diameter = 2.0 * particles.radius[p];
+                    let ranges = [ranges[0].of_force(&local), ranges[1]];
                     for (found, range) in outside.iter_mut().zip(&ranges) {
                         found.look(range, p, &local, diameter);
                     }

@@ -11,12 +11,49 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
 use calcine_coupler::setup::ParticleSetup;
 
+use super::bed::{self, Choice};
 use super::flow_numbers::FlowNumbers;
-use super::model::{Case, MeshSpec, Population, TimeSpec};
+use super::model::{Case, MeshSpec, PlacementSpec, Population, TimeSpec};
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::units::{short, short3};
 use super::{boundaries, buoyancy, mesh_shape, resolved, sizes, span, work};
+
+/// Most names of columns in a line.
+const COLUMNS: usize = 12;
+
+/// What is read of each file of particles.
+fn files(case: &Case) -> Vec<String> {
+    let told = |one: &Population| {
+        let PlacementSpec::File {
+            path,
+            timestep,
+            kind,
+        } = &one.place
+        else {
+            return None;
+        };
+        let choice = Choice {
+            timestep: *timestep,
+            kind: *kind,
+        };
+        let names = |names: &[String]| {
+            let more = match names.len().saturating_sub(COLUMNS) {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            names[..names.len().min(COLUMNS)].join(", ") + &more
+        };
+        let [read, others] = bed::columns(path, choice).ok()?;
+        let file = path.file_name().unwrap_or(path.as_os_str()).display();
+        let mut line = format!("`{}` from {file}: {}", one.name, names(&read));
+        if !others.is_empty() {
+            line += &format!("; not read: {}", names(&others));
+        }
+        Some(line)
+    };
+    case.particles.iter().filter_map(told).collect()
+}
 
 /// Clocks, sizes, the flow, and how far the time splitting may be from the unsplit run.
 pub fn check_report(
@@ -78,6 +115,9 @@ pub fn check_report(
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
+    for line in files(case) {
+        let _ = writeln!(text, "                 {line}");
+    }
     if packing.moved_share > 0.0 {
         let _ = writeln!(
             text,

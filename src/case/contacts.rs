@@ -1,5 +1,7 @@
 //! From the sections of a case to what a discrete element solver is told, and its time step.
 
+use std::f64::consts::PI;
+
 use calcine_coupler::coordinator::LONGEST_STEP;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{
@@ -18,7 +20,7 @@ use super::model::{Case, FreeMotion, MaterialSpec, MotionKind, MotionSpec};
 use super::moving::moving_spheres;
 use super::servo_cautions;
 use super::touching::{Touching, touching};
-use super::units::shown;
+use super::units::{short3, shown};
 
 /// A step above this share of Rayleigh's time gets a warning, above the second it is refused.
 const RAYLEIGH: [f64; 2] = [0.2, LONGEST_STEP];
@@ -347,6 +349,25 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
     limits
 }
 
+/// How well steps of a share of the shortest impact resolve the lowest restitution of linear dashpots, whose force jumps at first touch:
+/// about ζ π over the steps of an impact, by where in a step that begins, ζ = −ln e/√(π² + ln² e).
+fn restitution(case: &Case, motion: &FreeMotion, share: f64) -> Option<String> {
+    let linear = matches!(
+        motion.law.force,
+        ContactForce::Linear { .. } | ContactForce::LinearSprings { .. }
+    );
+    let stated = case.contacts.iter().filter_map(|one| one.restitution);
+    let lowest = stated.filter(|e| *e > 0.0 && *e < 1.0).reduce(f64::min)?;
+    let damping = -lowest.ln() / PI.hypot(lowest.ln());
+    linear.then(|| {
+        format!(
+            "    {:.0} steps in the shortest impact: restitution of {lowest} to about {} %\n",
+            1.0 / share,
+            short3(100.0 * PI * damping * share)
+        )
+    })
+}
+
 /// What `calcine check` says of moving particles: step and times.
 pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String> {
     let (Told::Free(contacts), Some(motion)) = (&setup.motion, &case.motion) else {
@@ -370,6 +391,7 @@ pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String>
         limits.hertz,
         limits.speed
     );
+    text.extend(restitution(case, motion, step / limits.hertz));
     if !motion.held.is_none() {
         let end = case.time.end;
         let moving = motion.held.moving(&case.time.acceleration, end);
@@ -469,6 +491,47 @@ mod tests {
     }
 
     /// A sphere of 50 MPa that is alone among walls of 5 MPa: their E* is that of spheres of 2/(1/5 + 1/50) = 9.0909 MPa with each other.
+    /// Rebound speed of a sphere of 1 kg from a spring of 1 N/m by the method of Verlet, as contacts are computed; `begins` is where in a
+    /// step it touches.
+    fn rebound(restitution: f64, steps: f64, begins: f64) -> f64 {
+        let damping = -restitution.ln() / PI.hypot(restitution.ln());
+        let step = PI / (1.0 - damping * damping).sqrt() / steps;
+        let force = |x: f64, v: f64| if x > 0.0 { -x - 2.0 * damping * v } else { 0.0 };
+        let (mut x, mut v) = (-begins * step, 1.0);
+        let mut acting = 0.0;
+        while v > 0.0 || x > 0.0 {
+            v += 0.5 * step * acting;
+            x += step * v;
+            acting = force(x, v);
+            v += 0.5 * step * acting;
+        }
+        -v
+    }
+
+    #[test]
+    fn restitutions_scatter_by_about_as_much_as_check_tells() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let case = folder.join("tests/inputs/good/moving.toml");
+        for (restitution, steps) in [(0.5, 20.0), (0.7, 20.0), (0.7, 50.0), (0.9, 20.0)] {
+            let set = [format!("contacts[0].restitution={restitution}")];
+            let case = crate::case::read(&case, &set).unwrap();
+            let motion = case.motion.as_ref().unwrap();
+            let told = super::restitution(&case, motion, 1.0 / steps).unwrap();
+            let words = format!(
+                "{steps} steps in the shortest impact: restitution of {restitution} to about "
+            );
+            let told = told.trim().strip_prefix(&words).unwrap();
+            let told: f64 = told.trim_end_matches(" %").parse().unwrap();
+            let found: Vec<f64> = (0..100)
+                .map(|place| rebound(restitution, steps, f64::from(place) / 100.0))
+                .collect();
+            let most = found.iter().copied().fold(f64::MIN, f64::max);
+            let least = found.iter().copied().fold(f64::MAX, f64::min);
+            let scatter = 50.0 * (most - least) / restitution;
+            assert!((0.8..1.3).contains(&(scatter / told)), "{scatter} {told}");
+        }
+    }
+
     #[test]
     fn a_particle_that_is_alone_is_limited_by_what_it_can_touch() {
         let path =

@@ -29,21 +29,22 @@ pub(super) const PRESSED: f64 = 0.05;
 pub(super) const CRUSHED: f64 = 0.2;
 
 /// The first particle that overlaps one before it: of another population by more than spheres that are pressed together, of
-/// its own, where particles act on each other, by more than the softest contact does.
+/// its own, where these are `solid`, by more than the softest contact does.
 pub(super) fn first(
     setup: &ParticleSetup,
     periodicity: &Periodicity,
-    act_on_each_other: bool,
+    solid: &[bool],
 ) -> Option<Overlap> {
+    let is_solid = |row: usize| solid.get(setup.population[row] as usize) == Some(&true);
     let too_near = |touch: &NeighbourPair| {
         let [a, b] = touch.particles;
         let radii = touch.radius[0] + touch.radius[1];
         let one = setup.population[a] == setup.population[b];
         let most = if one { CRUSHED } else { PRESSED };
-        (act_on_each_other || !one) && touch.overlap > radii * most
+        (!one || is_solid(a)) && touch.overlap > radii * most
     };
     let foreign = setup.population.windows(2).any(|pair| pair[0] != pair[1]);
-    if !act_on_each_other && !foreign {
+    if !foreign && !solid.contains(&true) {
         return None;
     }
     let touches = touching(periodicity, &setup.radius, &setup.position, 0.0).into_iter();
@@ -101,8 +102,8 @@ mod tests {
 
     use super::*;
 
-    fn first(setup: &ParticleSetup, act_on_each_other: bool) -> Option<Overlap> {
-        super::first(setup, &Periodicity::default(), act_on_each_other)
+    fn first(setup: &ParticleSetup, solid: bool) -> Option<Overlap> {
+        super::first(setup, &Periodicity::default(), &[solid; 8])
     }
 
     fn bed(spheres: &[(u32, [f64; 3], f64)]) -> ParticleSetup {
@@ -149,7 +150,7 @@ mod tests {
         };
         let setup = bed(&[(0, [1.0, 5.0, 5.0], 2.0), (0, [18.8, 5.0, 5.0], 2.0)]);
         assert_eq!(first(&setup, true), None);
-        let found = super::first(&setup, &periodicity, true).unwrap();
+        let found = super::first(&setup, &periodicity, &[true]).unwrap();
         assert!((found.distance - 2.2).abs() < 1e-12);
     }
 }

@@ -91,6 +91,10 @@ fn open(case: &Case) -> Vec<(&str, f64, Option<f64>)> {
 
 /// Pressures of patches that have little to do with that of the gas at the start.
 fn far_pressures(case: &Case) -> Vec<String> {
+    // A density that is stated follows none.
+    if !case.gas.properties.compressible() {
+        return Vec::new();
+    }
     let start = case.gas.pressure;
     let far = |pressure: f64| pressure > FAR * start || start > FAR * pressure;
     let patches = open(case)

@@ -1,5 +1,7 @@
 //! From populations to particles.
 
+use std::path::Path;
+
 use calcine_coupler::packing::regular::{regular_in_box, regular_in_cylinder};
 use calcine_coupler::packing::{Fill, RandomSpec, random_in_box, random_in_cylinder};
 use calcine_coupler::periodicity::Periodicity;
@@ -7,15 +9,14 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 
-use super::bed::{self, Choice};
+use super::bed::{self, Choice, Entry};
 use super::model::{
     Case, MeshSpec, MotionSpec, PackingSection, PlacementSpec, Population, RandomAmount,
 };
 use super::other_density;
 use super::overlap;
 use super::place_error::PlaceError;
-use super::units::shown;
-use crate::laws;
+use super::units::{short, shown};
 
 /// Particles at the start of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,9 +85,10 @@ pub fn particles(case: &Case, periodicity: &Periodicity) -> Result<InitialPartic
     if setup.weight.iter().all(|weight| *weight == 1.0) {
         setup.weight.clear();
     }
-    let moves = |one: &Population| one.motion == MotionSpec::Free;
-    let act_on_each_other = case.particles.iter().any(moves) || laws::heat(case).is_some();
-    match overlap::first(setup, periodicity, act_on_each_other) {
+    // Parcels, and what stands for many, may lie in each other.
+    let alone = |one: &Population| one.motion != MotionSpec::Parcels && one.weight == 1.0;
+    let solid: Vec<bool> = case.particles.iter().map(alone).collect();
+    match overlap::first(setup, periodicity, &solid) {
         None => Ok(placed),
         Some(found) => Err(PlaceError::Overlap {
             ids: found.pair.map(|index| setup.id[index]),
@@ -212,6 +214,7 @@ fn spheres(
             let mut made = Vec::with_capacity(entries.len());
             let sized = entries.iter().zip(&diameters);
             notes.extend(other_density::told(case, population, path, sized));
+            notes.extend(in_celsius(case, population, path, &entries));
             for (entry, drawn) in entries.into_iter().zip(diameters) {
                 let centre = periodicity.wrap(entry.centre);
                 if let Some(fact) = outside(&case.mesh, &centre) {
@@ -249,6 +252,34 @@ fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {
         }
     }
     centres
+}
+
+/// Temperatures in K of files below this are looked at.
+const COLD: f64 = 200.0;
+
+/// A warning where the coldest particle of a file is nearer to the gas if its temperature is in degrees Celsius.
+fn in_celsius(
+    case: &Case,
+    population: &Population,
+    path: &Path,
+    entries: &[Entry],
+) -> Option<String> {
+    let stated = entries
+        .iter()
+        .filter_map(|one| Some((one.row, one.temperature?)));
+    let (row, coldest) = stated.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let gas = case.gas.temperature;
+    let celsius = (coldest + 273.15 - gas).abs() < (coldest - gas).abs();
+    (coldest < COLD && celsius).then(|| {
+        format!(
+            "`particles.{}.place.file`: {}, {row} has a temperature of {} K in a gas of {} K: temperatures of files are read in K; add \
+             273.15 if they are in degrees Celsius",
+            population.name,
+            path.display(),
+            short(coldest),
+            short(gas)
+        )
+    })
 }
 
 /// What to do about a particle outside the mesh.

@@ -88,7 +88,7 @@ const VOID_FRACTION: &str = "void fraction";
 pub(super) fn of(case: &Case, flow: &LocalGas, diameter: f64) -> Vec<StatedRange> {
     let laws = &case.laws;
     let ranges = [
-        ("drag", laws.drag.make().range()),
+        ("drag", laws.drag.make().range().of_force(flow)),
         ("heat transfer", laws.heat_transfer.make().range()),
         ("mass transfer", laws.mass_transfer.make().range()),
     ];

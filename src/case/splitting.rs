@@ -127,7 +127,13 @@ impl<'a> Splitting<'a> {
                 short3(self.ratio)
             ));
         }
-        if self.error > WARNING {
+        if self.error > 1.0 {
+            all.push(format!(
+                "0.11 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: its temperature takes that of the gas within a fraction of a window, so \
+                 that its way there is not resolved; {step}",
+                short3(self.error)
+            ));
+        } else if self.error > WARNING {
             all.push(format!(
                 "0.11 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: within a window its temperature comes so far towards that of \
                  the gas that the error is this share of their difference; {step}",

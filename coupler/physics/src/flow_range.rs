@@ -31,6 +31,15 @@ impl FlowRange {
         basis: ReynoldsBasis::Superficial,
     };
 
+    /// The range of a law of a force in a flow: without slip there is none, whatever the law.
+    #[must_use]
+    pub fn of_force(mut self, gas: &LocalGas) -> Self {
+        if gas.slip == 0.0 {
+            self.reynolds.0 = 0.0;
+        }
+        self
+    }
+
     /// The Reynolds number that the range is of, at a sphere of a diameter in m.
     pub fn reynolds_of(&self, gas: &LocalGas, diameter: f64) -> f64 {
         match self.basis {

@@ -34,6 +34,12 @@ pub(super) fn sheet(text: &str, timestep: Option<u64>) -> Result<Sheet, Fault> {
             }
         }
     }
+    if count.is_some() && timestep.is_none_or(|wanted| wanted == step) {
+        let what = format!(
+            "its snapshot of timestep {step} ends before its atoms, as where a run was killed; name another one by `place.timestep`"
+        );
+        return Err((None, what));
+    }
     found.ok_or_else(|| {
         let held: Vec<String> = steps.iter().map(u64::to_string).collect();
         let what = match timestep {

@@ -13,8 +13,34 @@ use sheet::{Fault, Row, Sheet};
 
 use super::place_error::PlaceError;
 
+/// The columns of a file that are read and those that are not, by their names in lower case.
+pub(super) fn columns(path: &Path, choice: Choice) -> Result<[Vec<String>; 2], PlaceError> {
+    let columns = open(path, choice)?.columns.into_iter();
+    let named = columns.filter(|(name, _)| !name.is_empty());
+    Ok(named
+        .map(|(name, _)| name)
+        .partition::<Vec<_>, _>(|name| sheet::is_read(name))
+        .into())
+}
+
 /// The particles of a file, in the order of their ids where it has ids.
 pub(super) fn read(path: &Path, choice: Choice) -> Result<Vec<Entry>, PlaceError> {
+    open(path, choice)?
+        .entries(choice)
+        .map_err(|fault| in_file(path, fault))
+}
+
+fn in_file(path: &Path, (row, what): Fault) -> PlaceError {
+    PlaceError::File {
+        place: match row {
+            Some(row) => format!("{}, {row}", path.display()),
+            None => path.display().to_string(),
+        },
+        what,
+    }
+}
+
+fn open(path: &Path, choice: Choice) -> Result<Sheet, PlaceError> {
     if path.is_dir() {
         return Err(PlaceError::File {
             place: path.display().to_string(),
@@ -25,15 +51,7 @@ pub(super) fn read(path: &Path, choice: Choice) -> Result<Vec<Entry>, PlaceError
         path: path.to_owned(),
         cause,
     })?;
-    sheet(path, &bytes, choice)
-        .and_then(|sheet| sheet.entries(choice))
-        .map_err(|(row, what)| PlaceError::File {
-            place: match row {
-                Some(row) => format!("{}, {row}", path.display()),
-                None => path.display().to_string(),
-            },
-            what,
-        })
+    sheet(path, &bytes, choice).map_err(|fault| in_file(path, fault))
 }
 
 fn sheet(path: &Path, bytes: &[u8], choice: Choice) -> Result<Sheet, Fault> {
@@ -48,18 +66,19 @@ fn sheet(path: &Path, bytes: &[u8], choice: Choice) -> Result<Sheet, Fault> {
             (Some(Row::Line(line)), what.to_owned())
         })
     };
-    let known = ["csv", "txt", "vtk", "vtu", "vtp"];
-    let dump = extension.as_deref().is_none_or(|e| !known.contains(&e));
+    // LIGGGHTS names dumps as users like, often by the step: bed.dump, dump.liggghts, d1000.
+    let dump = bytes.starts_with(b"ITEM:");
     if choice.timestep.is_some() && !dump {
         let what = "it holds no timesteps to choose from; leave out `timestep`";
         return Err((None, what.into()));
+    }
+    if dump {
+        return dump::sheet(text()?, choice.timestep).and_then(Sheet::checked);
     }
     match extension.as_deref() {
         Some("vtu" | "vtp") => xml::sheet(bytes),
         Some("vtk") => legacy::sheet(text()?),
         Some("csv" | "txt") => csv::sheet(text()?).and_then(Sheet::checked),
-        // LIGGGHTS names dumps as users like, often by the step: bed.dump, dump.liggghts, d1000.
-        _ if bytes.starts_with(b"ITEM:") => dump::sheet(text()?, choice.timestep),
         _ => {
             let what = "it is none of .csv, .vtk, .vtu, .vtp, nor does it begin with \"ITEM:\" as a \
                         LIGGGHTS dump does";

@@ -87,9 +87,18 @@ const SPIN: [[&str; 3]; 3] = [
 ];
 
 /// Names under which people write what is read under another one, alone or beside a unit; and what to do.
-const MEANT: [(&[&str], &str); 7] = [
+const MEANT: [(&[&str], &str); 8] = [
     (
-        &["d", "dia", "diam", "diameter", "durchmesser", "size"],
+        &[
+            "d",
+            "dia",
+            "diam",
+            "diameter",
+            "diametre",
+            "diamètre",
+            "durchmesser",
+            "size",
+        ],
         "name it `diameter` (in m), or leave it out",
     ),
     (
@@ -103,6 +112,10 @@ const MEANT: [(&[&str], &str); 7] = [
     (
         &["density", "dichte", "rho"],
         "name it `density` (in kg/m^3), or leave it out",
+    ),
+    (
+        &["weight"],
+        "`weight` of the population in the case counts; leave it out",
     ),
     (
         &["mass", "masse"],
@@ -151,7 +164,19 @@ const UNITS: [&str; 15] = [
 ];
 
 /// Parts of names that say whose value it is: it is the particle's all the same.
-const WHOSE: [&str; 4] = ["initial", "p", "particle", "particles"];
+const WHOSE: [&str; 8] = [
+    "bead",
+    "grain",
+    "initial",
+    "p",
+    "particle",
+    "particles",
+    "pellet",
+    "sphere",
+];
+
+/// What LIGGGHTS and LAMMPS put before the names of computes and fixes.
+const COMPUTED: [&str; 2] = ["c_", "f_"];
 
 const DIAMETER: [&str; 1] = ["diameter"];
 
@@ -177,6 +202,12 @@ fn meant(name: &str) -> Option<&'static str> {
     if is_read(name) {
         return None;
     }
+    let plain = COMPUTED.iter().find_map(|start| name.strip_prefix(start));
+    let plain = plain.unwrap_or(name);
+    plain_meant(name).or_else(|| plain_meant(plain))
+}
+
+fn plain_meant(name: &str) -> Option<&'static str> {
     let parts: Vec<&str> = name
         .split(|letter: char| !letter.is_alphanumeric() && letter != '^')
         .filter(|part| !part.is_empty())

@@ -51,7 +51,7 @@ pub(super) const MATERIALS: &[Key] = &[
     key("emissivity", Number(D::NONE, UpTo(0.0, 1.0)), Without("not known"), "Emissivity of the surface, above 0 and up to 1.", "0.9"),
     key("young", Number(D::PRESSURE, Positive), Without("not known"), "Young's modulus by which contacts are computed.", "\"50 MPa\""),
     key("real_young", Number(D::PRESSURE, Positive), Without("that of `young`"), "Young's modulus of the real material, where `young` is softened; by it contacts conduct where `laws.conduction.area` says so.", "\"210 GPa\""),
-    key("poisson", Number(D::NONE, Between(-1.0, 0.5)), Without("not known"), "Poisson's ratio, -1 to 0.5.", "0.22"),
+    key("poisson", Number(D::NONE, Within(-1.0, 0.5)), Without("not known"), "Poisson's ratio, above -1 and below 0.5.", "0.22"),
 ];
 
 #[rustfmt::skip]
