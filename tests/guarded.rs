@@ -70,7 +70,9 @@ fn files_of_the_users_own_are_not_written_over() {
     // Notes beside the results are in nobody's way; results without their summary are.
     fs::create_dir(at("out")).unwrap();
     fs::write(at("out/notes.txt"), "mine").unwrap();
+    fs::write(at("out/lock"), "mine").unwrap();
     assert!(within("out").status.success());
+    assert_eq!(fs::read_to_string(at("out/lock")).unwrap(), "mine");
     fs::remove_file(at("out/summary.json")).unwrap();
     let rows = fs::read(at("out/series.csv")).unwrap();
     assert_eq!(within("out").status.code(), Some(2));
@@ -359,6 +361,49 @@ fn a_sphere_at_rest_is_in_the_range_of_a_law_of_drag() {
     assert!(
         !told.iter().any(|one| one.contains("law of drag")),
         "{told:?}"
+    );
+}
+
+#[test]
+fn names_that_results_cannot_hold_are_refused_by_check() {
+    for name in ["", ".", "a/b", "a,b"] {
+        let quantity = format!("quantities[0].name=\"{name}\"");
+        let refused = read(&good("moving"), &[quantity]).unwrap_err().render();
+        assert!(refused.contains("results have it as a name"), "{refused}");
+    }
+}
+
+#[test]
+fn a_pressure_of_a_patch_off_that_of_the_gas_is_warned_of() {
+    let top = |pressure: &str| format!("gas.patch.top.outlet.pressure=\"{pressure}\"");
+    let words = "which its density follows";
+    assert!(warned("moving", &[&top("0.7 atm")], words));
+    assert!(!warned("moving", &[&top("0.99 atm")], words));
+}
+
+/// A sphere of 5 mm that cools by radiation: an implicit step of 10 s is off by 0.11 times its rate times the step.
+#[test]
+fn the_error_of_radiation_over_a_window_is_told() {
+    let set = [
+        "laws.radiation={ law = \"view-factors\", surroundings = \"300 K\" }",
+        "materials.glass.emissivity=0.8",
+        "gas.initial.temperature=\"1000 K\"",
+    ];
+    let set: Vec<String> = set.iter().map(|one| (*one).to_owned()).collect();
+    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .args(["check"])
+        .arg(good("moving"))
+        .args(set.iter().flat_map(|one| ["--set", one]))
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stdout).unwrap();
+    // h_r A/(m c) = 6 h_r/(d rho c), h_r = 4 0.8 sigma 1000^3 W/(m^2 K), at windows of 2 ms.
+    let rate = 6.0 * 4.0 * 0.8 * 5.670_374_419e-8 * 1e9 / (2e-3 * 2500.0 * 840.0);
+    let line = format!("error of radiation           {:.2e}", 0.11 * rate * 2e-3);
+    assert!(
+        told.contains(&line),
+        "{line}: {told}{}",
+        String::from_utf8_lossy(&output.stderr)
     );
 }
 

@@ -10,7 +10,7 @@ use super::units::{short3, shown};
 /// Share of a pressure by which another differs that is no longer a head of flow: between 1 bar and 1 atm it is 0.013.
 const UNIT_SLIP: f64 = 5e-3;
 /// Ratio of two pressures of one gas above which one of them is likely wrong.
-const FAR: f64 = 1.5;
+const FAR: f64 = 1.1;
 /// Share of the weight of a column of gas below which a difference of pressures does not hold it.
 const LACKING: f64 = 0.25;
 

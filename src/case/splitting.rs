@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
+use calcine_coupler::physics::radiation::STEFAN_BOLTZMANN;
 use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 use calcine_coupler::time::GasStorage;
@@ -15,6 +16,32 @@ use super::units::short3;
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
 
+/// Error of an implicit Euler step in shares of the span of temperatures, over the step times the rate (docs/theory.md, TSM-8).
+const STEP_ERROR: f64 = 0.11;
+
+/// Coefficient 4 emissivity sigma T^3 in W/(m² K) of a population that radiates and may change its temperature, at the hottest of its own,
+/// the gas', the surroundings' and the walls' temperatures at the start.
+fn radiation(case: &Case, population: &Population) -> Option<f64> {
+    let spec = case.laws.radiation.as_ref()?;
+    let emissivity = case.materials[population.material].emissivity?;
+    if population.prescribed_temperature.is_some() {
+        return None;
+    }
+    let around = spec.surroundings.as_ref().map(|one| one.at(0.0));
+    let walls = case
+        .wall_temperatures
+        .iter()
+        .flatten()
+        .map(|one| one.at(0.0));
+    let others = case.particles.iter().map(|one| one.temperature);
+    let all = others
+        .chain(around)
+        .chain(walls)
+        .chain([case.gas.temperature]);
+    let hottest = all.fold(0.0, f64::max);
+    Some(4.0 * emissivity * STEFAN_BOLTZMANN * hottest.powi(3))
+}
+
 /// Numbers of one population in the gas at the start.
 pub(super) struct Splitting<'a> {
     population: &'a Population,
@@ -22,6 +49,8 @@ pub(super) struct Splitting<'a> {
     ratio: f64,
     /// Error of process storage in shares of the span of temperatures.
     error: f64,
+    /// The same of radiation in black surroundings, at the hottest that the case states; `None` where there is none.
+    radiation: Option<f64>,
     /// Window over the drag's own time, where there is drag.
     drag: Option<f64>,
     /// Biot number h (d/6)/k of the film against the inside, where the material states its conductivity.
@@ -64,7 +93,12 @@ impl<'a> Splitting<'a> {
             population,
             ratio: factor * eps * density * capacity / solid,
             // docs/theory.md, TSM-8.
-            error: 0.11 * rate * factor * window,
+            error: STEP_ERROR * rate * factor * window,
+            radiation: radiation(case, population).map(|h| {
+                let area = PI * d * d;
+                let heat = material.density * volume * solid_capacity;
+                STEP_ERROR * h * area / heat * factor * window
+            }),
             drag,
             biot,
             resolved: material.inside != Inside::Thin,
@@ -94,6 +128,12 @@ impl<'a> Splitting<'a> {
                 above(self.error)
             ),
         ];
+        lines.extend(self.radiation.map(|error| {
+            format!(
+                "0.11 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
+                above(error)
+            )
+        }));
         lines.extend(
             ranges::of(case, &self.local, self.diameter)
                 .iter()

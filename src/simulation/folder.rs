@@ -75,7 +75,10 @@ pub(crate) fn claim(out: &Path, resume: bool) -> Result<ClaimedFolder, Simulatio
         above,
         lock: None,
     };
-    let file = File::create(out.join(LOCK)).map_err(unusable)?;
+    // What is in a file of that name stays.
+    let mut lock = File::options();
+    let lock = lock.write(true).create(true).truncate(false);
+    let file = lock.open(out.join(LOCK)).map_err(unusable)?;
     flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|_| {
         SimulationError::Occupied {
             folder: out.to_owned(),

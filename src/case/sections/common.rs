@@ -33,3 +33,14 @@ pub(super) fn existing(reader: &TableReader<'_>, key: &str, folder: &Path) -> Op
         }
     }
 }
+
+/// The name of what results files hold under it: a group or a column of its own.
+pub(super) fn name_in_results<'a>(table: &TableReader<'a>) -> Option<&'a str> {
+    let name = table.text("name")?;
+    if ["", ".", ".."].contains(&name.trim()) || name.contains(['/', ',', '"']) {
+        let rule = format!("is \"{name}\"");
+        let help = "results have it as a name: write a word, without slashes, commas and quotes";
+        table.fail("name", rule, help);
+    }
+    Some(name)
+}

@@ -2,6 +2,7 @@
 
 use calcine_coupler::physics::Vec3;
 
+use super::common::name_in_results;
 use crate::case::model::Probe;
 use crate::case::table::TableReader;
 use crate::case::units::{Dimension, UnitError, quantities};
@@ -11,15 +12,11 @@ pub(super) fn probes(root: &TableReader<'_>) -> Vec<Probe> {
     root.tables("probes")
         .iter()
         .filter_map(|table| {
-            let name = table.text("name");
+            let name = name_in_results(table);
             if let Some(name) = name {
                 if names.contains(&name) {
                     let rule = format!("is \"{name}\" a second time");
                     table.fail("name", rule, "names of probes must differ");
-                }
-                if name.contains(['/', ',', '"']) {
-                    let rule = format!("is \"{name}\"");
-                    table.fail("name", rule, "leave out slashes, commas and quotes");
                 }
                 names.push(name);
             }

@@ -4,6 +4,7 @@ use calcine_coupler::motion::Wall;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
+use super::common::name_in_results;
 use super::common::patches;
 use super::walls::direction;
 use crate::case::model::{
@@ -36,7 +37,7 @@ pub(super) fn quantities(root: &TableReader<'_>, known: &Known<'_>) -> Vec<Quant
 }
 
 fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
-    let name = table.text("name");
+    let name = name_in_results(table);
     let measure = table.table("measure").and_then(|reader| {
         let measure = measure(&reader, known);
         let of = reader.text("of");
