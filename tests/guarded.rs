@@ -73,6 +73,12 @@ fn files_of_the_users_own_are_not_written_over() {
     fs::write(at("out/lock"), "mine").unwrap();
     assert!(within("out").status.success());
     assert_eq!(fs::read_to_string(at("out/lock")).unwrap(), "mine");
+    fs::create_dir(at("locked")).unwrap();
+    for name in ["locked/lock", "locked/case.toml"] {
+        fs::write(at(name), "mine").unwrap();
+    }
+    assert_eq!(within("locked").status.code(), Some(2));
+    assert_eq!(fs::read_to_string(at("locked/case.toml")).unwrap(), "mine");
     fs::remove_file(at("out/summary.json")).unwrap();
     let rows = fs::read(at("out/series.csv")).unwrap();
     assert_eq!(within("out").status.code(), Some(2));

@@ -1,4 +1,4 @@
-//! Rows that stand for several particles: a held bed of particles of weight w gives the gas what w particles at each
+//! Rows that stand for several particles: a held bed of particles of weight w gives the gas what w particles in the
 //! place give it; the ledger closes, runs resume to the same bits, and LIGGGHTS and particles in C
 //! carry the weights too.
 
@@ -15,15 +15,24 @@ use calcine::results::read::{Arrays, Series, arrays, collection};
 
 use crate::support::{c_solver, killed, program};
 
-/// A file of centres in a grid of 10 mm from 5 mm on, each place `times` over.
-fn grid(path: &Path, counts: [usize; 3], pitch: f64, above: f64, times: usize) -> String {
+/// A file of centres in a grid from half a pitch on, `times` beside each other about each place, a diameter and a bit
+/// apart: in one cell of the mesh.
+fn grid(
+    path: &Path,
+    counts: [usize; 3],
+    [pitch, apart]: [f64; 2],
+    above: f64,
+    times: usize,
+) -> String {
     let mut text = String::from("x,y,z\n");
     let place = |k: usize| (k as f64 + 0.5) * pitch;
     for z in 0..counts[2] {
         for y in 0..counts[1] {
             for x in 0..counts[0] {
-                for _ in 0..times {
-                    let _ = writeln!(text, "{},{},{}", place(x), place(y), above + place(z));
+                for k in 0..times {
+                    let beside = (k as f64 - 0.5 * (times as f64 - 1.0)) * apart;
+                    let [x, y, z] = [beside + place(x), place(y), above + place(z)];
+                    let _ = writeln!(text, "{x},{y},{z}");
                 }
             }
         }
@@ -63,7 +72,7 @@ fn closes(out: &Path) -> Summary {
     summary
 }
 
-/// Two rows at each place, and one of weight 2; each with the same keys set.
+/// Two rows beside each other at each place, and one of weight 2; each with the same keys set.
 fn pair(
     folder: &Path,
     case: &str,
@@ -86,7 +95,7 @@ fn pair(
 }
 
 const COLUMN: [&str; 5] = [
-    "particles[0].diameter=7 mm",
+    "particles[0].diameter=4 mm",
     "time.end=20 s",
     "output.every=10 s",
     "quantities[1].measure.number=1",
@@ -94,11 +103,11 @@ const COLUMN: [&str; 5] = [
 ];
 
 fn column(path: &Path, times: usize) -> String {
-    grid(path, [1, 1, 10], 0.01, 0.0, times)
+    grid(path, [1, 1, 10], [0.01, 0.0045], 0.0, times)
 }
 
 #[test]
-fn two_particles_at_each_place_are_one_of_weight_two() {
+fn two_particles_in_a_cell_are_one_of_weight_two() {
     let folder = tempfile::tempdir().unwrap();
     let [two, one] = pair(folder.path(), "heated-column", column, &COLUMN);
     for field in ["temperature", "velocity", "pressure", "void_fraction"] {
@@ -126,12 +135,12 @@ fn two_particles_at_each_place_are_one_of_weight_two() {
 fn so_are_two_that_react() {
     let folder = tempfile::tempdir().unwrap();
     let set = [
-        "particles[0].diameter=15 mm",
+        "particles[0].diameter=9 mm",
         "time.end=400 s",
         "output.every=400 s",
         "output.series_every=20 s",
     ];
-    let stones = |path: &Path, times| grid(path, [5, 5, 7], 0.02, 0.02, times);
+    let stones = |path: &Path, times| grid(path, [5, 5, 7], [0.02, 0.0095], 0.02, times);
     let [two, one] = pair(folder.path(), "lime-burning", stones, &set);
     for field in ["temperature", "velocity", "void_fraction"] {
         let off = off(&two, &one, field);
@@ -154,12 +163,12 @@ fn so_are_two_that_react() {
 fn and_two_that_dry() {
     let folder = tempfile::tempdir().unwrap();
     let set = [
-        "particles[0].diameter=3 mm",
+        "particles[0].diameter=1.8 mm",
         "time.end=2 min",
         "output.every=2 min",
         "output.series_every=20 s",
     ];
-    let chips = |path: &Path, times| grid(path, [6, 6, 12], 0.004, 0.008, times);
+    let chips = |path: &Path, times| grid(path, [6, 6, 12], [0.004, 0.0019], 0.008, times);
     let [two, one] = pair(folder.path(), "wood-drying", chips, &set);
     for field in ["temperature", "void_fraction", "H2O"] {
         let off = off(&two, &one, field);
@@ -199,11 +208,17 @@ fn a_bed_with_weights_resumes_to_the_same_bits() {
 fn weights_go_with_their_particles_to_two_ranks_and_into_comparisons() {
     let folder = tempfile::tempdir().unwrap();
     let case = program::shipped("lime-burning");
-    let place = grid(&folder.path().join("bed.csv"), [5, 5, 7], 0.02, 0.02, 1);
+    let place = grid(
+        &folder.path().join("bed.csv"),
+        [5, 5, 7],
+        [0.02, 0.0095],
+        0.02,
+        1,
+    );
     let keys = [
         place.as_str(),
         "particles[0].weight=1.7",
-        "particles[0].diameter=15 mm",
+        "particles[0].diameter=9 mm",
         "time.end=40 s",
         "output.every=40 s",
         "output.series_every=20 s",

@@ -49,7 +49,7 @@ pub struct Feed {
 pub struct Outlet {
     /// Its name.
     pub name: String,
-    /// They go when their centres are here.
+    /// They go when their centres are here before a window, and where they left the mesh within one through here.
     pub zone: Zone,
     /// Mass flow in kg/s of process time at most, the lowest first; `None`: all.
     pub rate: Option<f64>,
@@ -149,6 +149,17 @@ impl FeedsAndOutlets {
         };
         let feeds = self.feeds.iter().enumerate();
         feeds.map(|(index, feed)| owed(index, feed)).sum()
+    }
+
+    /// True where an outlet takes what leaves the mesh through its zone: it does so unless it has a rate of its own.
+    pub fn lets_out(&self) -> bool {
+        self.outlets.iter().any(|outlet| outlet.rate.is_none())
+    }
+
+    /// True where the straight line between two places in m meets such an outlet.
+    pub fn lets_out_between(&self, ends: [Vec3; 2]) -> bool {
+        let mut open = self.outlets.iter().filter(|outlet| outlet.rate.is_none());
+        open.any(|outlet| outlet.zone.meets(ends))
     }
 
     /// Decides what goes and comes before a window.

@@ -54,7 +54,7 @@ pub fn particles(case: &Case, periodicity: &Periodicity) -> Result<InitialPartic
             let own = sphere.velocity.map(|own| factor * own);
             setup.velocity.push(own.unwrap_or(velocity));
             setup.angular_velocity.push(factor * sphere.spin);
-            setup.weight.push(population.weight);
+            setup.weight.push(sphere.weight);
             placed.temperature.push(sphere.temperature);
         }
     }
@@ -82,12 +82,15 @@ pub fn particles(case: &Case, periodicity: &Periodicity) -> Result<InitialPartic
     {
         setup.angular_velocity.clear();
     }
+    // Parcels, and what stands for many, may lie in each other.
+    let free = |one: &Population| one.motion != MotionSpec::Parcels;
+    let mut solid: Vec<bool> = case.particles.iter().map(free).collect();
+    for (population, weight) in setup.population.iter().zip(&setup.weight) {
+        solid[*population as usize] &= *weight == 1.0;
+    }
     if setup.weight.iter().all(|weight| *weight == 1.0) {
         setup.weight.clear();
     }
-    // Parcels, and what stands for many, may lie in each other.
-    let alone = |one: &Population| one.motion != MotionSpec::Parcels && one.weight == 1.0;
-    let solid: Vec<bool> = case.particles.iter().map(alone).collect();
     match overlap::first(setup, periodicity, &solid) {
         None => Ok(placed),
         Some(found) => Err(PlaceError::Overlap {
@@ -111,6 +114,8 @@ struct Sphere {
     velocity: Option<Vec3>,
     /// Angular velocity in rad/s of process time.
     spin: Vec3,
+    /// Statistical weight.
+    weight: f64,
 }
 
 fn spheres(
@@ -136,6 +141,7 @@ fn spheres(
                 temperature: population.temperature,
                 velocity: None,
                 spin: Vec3::zeros(),
+                weight: population.weight,
             })
             .collect()
     };
@@ -225,6 +231,11 @@ fn spheres(
                     let place = format!("{}, {}", path.display(), entry.row);
                     return Err(PlaceError::File { place, what });
                 }
+                let weight = entry.weight.unwrap_or(population.weight);
+                if let Some(what) = weight_alone(case, population, weight) {
+                    let place = format!("{}, {}", path.display(), entry.row);
+                    return Err(PlaceError::File { place, what });
+                }
                 made.push(Sphere {
                     centre,
                     diameter: entry.diameter.unwrap_or(drawn),
@@ -234,11 +245,30 @@ fn spheres(
                         .unwrap_or(population.temperature),
                     velocity: entry.velocity.filter(|_| moves),
                     spin: entry.spin.filter(|_| moves).unwrap_or_default(),
+                    weight,
                 });
             }
             Ok(made)
         }
     }
+}
+
+/// What is wrong with a row of a file that stands for several particles.
+fn weight_alone(case: &Case, population: &Population, weight: f64) -> Option<String> {
+    if weight == 1.0 {
+        return None;
+    }
+    let what = if population.motion == MotionSpec::Free {
+        "the particles are free, and what touches others stands for itself alone: write motion = \"parcels\" or \"frozen\""
+    } else if case.laws.conducts() || case.laws.radiation.is_some() {
+        "`laws.conduction` or `laws.radiation` exchanges heat between particles: write `none` for both laws"
+    } else {
+        return None;
+    };
+    Some(format!(
+        "the weight is {}, but {what}, or leave out the column",
+        short(weight)
+    ))
 }
 
 fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {

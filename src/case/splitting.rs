@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use calcine_coupler::interior::reacting::Reaction;
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::physics::radiation::STEFAN_BOLTZMANN;
@@ -18,6 +19,12 @@ const WARNING: f64 = 0.1;
 
 /// Error of an implicit Euler step in shares of the span of temperatures, over the step times the rate (docs/theory.md, TSM-8).
 const STEP_ERROR: f64 = 0.11;
+
+/// Growth of the drag coefficient from rest to the terminal velocity above which it is told of.
+const GROWN: f64 = 1.5;
+
+/// Velocity in m/s up to which terminal velocities are looked for.
+const FASTEST: f64 = 1e4;
 
 /// Coefficient 4 emissivity sigma T^3 in W/(m² K) of a population that radiates and may change its temperature, at the hottest of its own,
 /// the gas', the surroundings' and the walls' temperatures at the start.
@@ -53,6 +60,8 @@ pub(super) struct Splitting<'a> {
     radiation: Option<f64>,
     /// Window over the drag's own time, where there is drag.
     drag: Option<f64>,
+    /// Drag coefficient at the terminal velocity over that at rest, and the window over m/K there; `None` where nothing falls.
+    fall: Option<[f64; 2]>,
     /// Biot number h (d/6)/k of the film against the inside, where the material states its conductivity.
     biot: Option<f64>,
     /// True where particles have shells.
@@ -85,6 +94,14 @@ impl<'a> Splitting<'a> {
         let prescribed = population.prescribed_temperature.is_some();
         let biot = conductivity.filter(|_| !prescribed && nusselt > 0.0);
         let biot = biot.map(|inside| nusselt * local.conductivity / (6.0 * inside));
+        let weight = (material.density - density).abs() * volume * case.gas.gravity.norm();
+        let fall = (weight > 0.0 && !case.laws.drag.is_none()).then(|| {
+            let [at_rest, falling] = drag_at_rest_and_falling(case, &local, (d, weight));
+            [
+                falling / at_rest,
+                window * falling / (material.density * volume),
+            ]
+        });
         let drag = (!case.laws.drag.is_none()).then(|| {
             let coefficient = case.laws.drag.make().coefficient(&local, d);
             window * coefficient / (material.density * volume)
@@ -100,6 +117,7 @@ impl<'a> Splitting<'a> {
                 STEP_ERROR * h * area / heat * factor * window
             }),
             drag,
+            fall,
             biot,
             resolved: material.inside != Inside::Thin,
             local,
@@ -183,8 +201,9 @@ impl<'a> Splitting<'a> {
         if let Some(biot) = self.biot.filter(|biot| *biot > WARNING && !self.resolved) {
             all.push(format!(
                 "the Biot number h d/(6 k) of `{name}` is {}, above {WARNING}: real particles of this size are colder inside than at their \
-                 surface, while these have one temperature each and take up heat faster: write `inside` = \"auto\" or \"radial\" of the material",
-                short3(biot)
+                 surface, while these have one temperature each and take up heat faster: {}",
+                short3(biot),
+                remedy(case, self.population.material)
             ));
         }
         all.extend(
@@ -201,8 +220,63 @@ impl<'a> Splitting<'a> {
                 short3(share)
             ));
         }
+        let follows =
+            self.population.motion != MotionSpec::Frozen && case.coupling.window_drag.follows();
+        if let Some([grown, share]) = self
+            .fall
+            .filter(|[grown, share]| follows && *grown > GROWN && *share > WARNING)
+        {
+            all.push(format!(
+                "the drag coefficient of `{name}` is {} times as large at the terminal velocity as at rest, but stays within a window as it \
+                 was at its start (DRG-3), and a window is {} times m/K: what falls from rest is too fast at first; shorten \
+                 `time.motion_window` where that matters",
+                short3(grown),
+                short3(share)
+            ));
+        }
         all
     }
+}
+
+/// What to do about particles of a material that are thin and should not be.
+fn remedy(case: &Case, material: usize) -> String {
+    let chemistry = &case.chemistry;
+    let start = chemistry.compositions.get(material).map_or(&[][..], |own| own);
+    let consumed = |one: &&Reaction| {
+        let held = |s: usize| start.get(s).is_some_and(|y| *y > 0.0);
+        one.rate.needs_thin() && one.solids.iter().any(|&(s, n)| n < 0.0 && held(s))
+    };
+    match chemistry.reactions.iter().find(consumed) {
+        None => "write `inside` = \"auto\" or \"radial\" of the material".into(),
+        Some(one) => format!(
+            "`{}` goes by {}, a law of thin particles; smaller ones, or `inside` = \"radial\" with a law of the whole particle, are \
+             without that error",
+            one.name,
+            one.rate.law().name
+        ),
+    }
+}
+
+/// Drag coefficients in kg/s of a particle of a diameter (m) at rest in the gas, and at the velocity at which it carries a weight in N.
+fn drag_at_rest_and_falling(
+    case: &Case,
+    local: &LocalGas,
+    (diameter, weight): (f64, f64),
+) -> [f64; 2] {
+    let law = case.laws.drag.make();
+    let at = |slip: f64| law.coefficient(&LocalGas { slip, ..*local }, diameter);
+    let (mut low, mut high) = (0.0, 1.0);
+    while at(high) * high < weight && high < FASTEST {
+        high *= 2.0;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match at(middle) * middle < weight {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    [at(1e-6 * high), at(high)]
 }
 
 /// The gas at the start, at the fastest inlet's superficial velocity.

@@ -18,7 +18,7 @@ use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
 use crate::results::inertial_number::InertialNumberStatistics;
-use crate::results::{CaseIdentity, Summary, same_case};
+use crate::results::{CaseIdentity, Summary, as_finished, same_case};
 use crate::simulation::{self, Ending, Simulation, SimulationError};
 
 /// How a case is run.
@@ -136,6 +136,7 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
 fn over(case: &Case, out: &Path, summary: &Summary, strict: bool) -> Result<Done, Failure> {
     same_case(out, &summary.case.hash, CaseIdentity::of(case))
         .map_err(|error| Failure::told(exit::CASE, &error))?;
+    as_finished(out, summary).map_err(|error| Failure::told(exit::OTHER, &error))?;
     let code = exit::complete(summary, strict);
     let text = format!("the run in {} is already complete", out.display());
     Ok(Done { code, text })

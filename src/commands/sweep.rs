@@ -334,14 +334,14 @@ fn table(
             continue;
         }
         let folder = &point.job.folder;
-        let series = Series::read(folder).map_err(|error| failed(&error))?;
         let summary = Summary::read(folder).map_err(|error| failed(&error))?;
         let wall = &summary.wall_time_s;
         row.push(format!("{:.3}", wall.total - wall.output));
         let against = reference.and_then(|value| partner(points, point, value));
         match against {
             Some(partner) => {
-                let base = Series::read(&partner.job.folder).map_err(|error| failed(&error))?;
+                let read = |folder: &Path| Series::read(folder).map_err(|error| failed(&error));
+                let (base, series) = (read(&partner.job.folder)?, read(folder)?);
                 let Deviation { percent, .. } = deviation(&base, &series, span);
                 // Of more than 1000 particles no temperatures are recorded one by one.
                 let largest = percent.iter().copied().reduce(f64::max).unwrap_or(f64::NAN);

@@ -85,6 +85,15 @@ pub enum ResultsError {
         /// What is wrong.
         fact: String,
     },
+    /// A file that a run left at its end is no longer there, or another.
+    #[error("the run is complete, but {} {fact}", path.display())]
+    #[diagnostic(help("put the file back as it was, or run the case again into a folder of its own; nothing was changed"))]
+    Spoilt {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fact: String,
+    },
     /// A probe with no point in the gas mesh.
     #[error("no point of the probe `{probe}` lies inside the gas mesh")]
     #[diagnostic(help("move the points of the probe into the mesh"))]

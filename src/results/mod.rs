@@ -38,7 +38,7 @@ pub(crate) use difference::{CaseIdentity, differences, same_case};
 pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo, unoccupied};
-pub use resume::{clear_start, may_start_again};
+pub use resume::{as_finished, clear_start, may_start_again};
 pub use summary::{Summary, Verdict, kind};
 
 /// Refuses probes outside a mesh, and quantities of patches that it lacks.

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calcine_coupler::coordinator::sum_of_file;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::files::{DRAFT, gas_file, particle_file};
+use super::files::{DRAFT, gas_file, particle_file, probe_file};
 use super::inertial_number::InertialNumberStatistics;
 use super::moment::SnapshotMoment;
 use super::quantities::Captured;
@@ -18,7 +18,8 @@ use super::steps::StepSummary;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::warnings::Warnings;
 use super::{CaseIdentity, same_case};
-use super::{ResultsError, STORE, SUMMARY, files};
+use super::read::{Series, collection};
+use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 use crate::case::model::Case;
 
 /// Name of the counters in a checkpoint directory.
@@ -54,9 +55,9 @@ pub(super) struct Counters {
     /// The snapshots written.
     #[serde(default)]
     pub snapshots: Vec<SnapshotMoment>,
-    /// SHA-256 of the file of the gas and of that of the particles of each.
+    /// SHA-256 of the file of the gas of each, of that of the particles, and of that of the probes where there are such.
     #[serde(default)]
-    pub sums: Vec<[String; 2]>,
+    pub sums: Vec<Vec<String>>,
     /// Ids of the particles that have a column of their own.
     pub tracked: Vec<u64>,
     /// Quantities whose time has come.
@@ -85,28 +86,40 @@ pub(super) struct Counters {
     pub gas_phases: BTreeMap<String, f64>,
 }
 
+/// The files of a snapshot, that of the probes whether there are any or not.
+fn all_snapshot_files(results: &Path, number: usize) -> [PathBuf; 3] {
+    [gas_file(number), particle_file(number), probe_file(number)].map(|name| results.join(name))
+}
+
+/// The files that a snapshot has.
+fn snapshot_files(results: &Path, number: usize) -> Vec<PathBuf> {
+    let [gas, particles, probes] = all_snapshot_files(results, number);
+    let mut files = vec![gas, particles];
+    files.extend(Some(probes).filter(|path| path.is_file()));
+    files
+}
+
 /// Flushes the files of the snapshots that came since the last checkpoint to the disk, and takes their sums.
 pub(super) fn seal(results: &Path, counters: &mut Counters) -> Result<(), ResultsError> {
     for number in counters.sums.len()..counters.snapshots.len() {
-        let sum = |name: String| {
-            let path = results.join(name);
+        let sum = |path: PathBuf| {
             sum_of_file(&path, true).map_err(ResultsError::file("flush", &path))
         };
-        let sums = [sum(gas_file(number))?, sum(particle_file(number))?];
+        let paths = snapshot_files(results, number);
+        let sums = paths.into_iter().map(sum).collect::<Result<_, _>>()?;
         counters.sums.push(sums);
     }
     Ok(())
 }
 
 /// Refuses snapshots whose files are not what was written; of several the first is named.
-fn check_snapshots(results: &Path, sums: &[[String; 2]]) -> Result<(), ResultsError> {
-    let check = |(number, sums): (usize, &[String; 2])| {
-        for (name, expected) in [gas_file(number), particle_file(number)].iter().zip(sums) {
-            let path = results.join(name);
-            let found = sum_of_file(&path, false).map_err(ResultsError::file("read", &path))?;
+fn check_snapshots(results: &Path, sums: &[Vec<String>]) -> Result<(), ResultsError> {
+    let check = |(number, sums): (usize, &Vec<String>)| {
+        for (path, expected) in all_snapshot_files(results, number).iter().zip(sums) {
+            let found = sum_of_file(path, false).map_err(ResultsError::file("read", path))?;
             if found != *expected {
                 let fact = "it has another content than was written";
-                return Err(ResultsError::behind(&path, fact));
+                return Err(ResultsError::behind(path, fact));
             }
         }
         Ok(())
@@ -190,8 +203,10 @@ pub(super) fn restore(
     same_case(results, &counters.case_hash, CaseIdentity::of(case))?;
     let count = counters.snapshots.len();
     for number in 0..count {
-        for name in [gas_file(number), particle_file(number)] {
-            let file = results.join(name);
+        // Without sums a snapshot has no probes that are counted on.
+        let written = counters.sums.get(number).map_or(2, Vec::len);
+        let files = all_snapshot_files(results, number);
+        for file in files.into_iter().take(written) {
             if !file.is_file() {
                 let fact = "it is missing, but the checkpoint counts on it";
                 return Err(ResultsError::behind(&file, fact));
@@ -230,6 +245,41 @@ pub fn may_start_again(results: &Path, case: &Case) -> Result<bool, ResultsError
         Verdict::Stopped => summary.failure.is_some(),
         _ => false,
     })
+}
+
+/// Refuses a folder of a run that came to its end whose results are not as the run left them: its series, `results.h5`,
+/// the snapshots.
+pub fn as_finished(results: &Path, summary: &Summary) -> Result<(), ResultsError> {
+    let spoilt = |path: PathBuf, fact: &str| ResultsError::Spoilt {
+        path,
+        fact: fact.into(),
+    };
+    let (series, store) = (results.join(SERIES), results.join(STORE));
+    for path in [&series, &store] {
+        // Without HDF5 there is no store.
+        let due = path == &series || summary.results_sum.is_some();
+        if due && !path.is_file() {
+            return Err(spoilt(path.clone(), "is missing"));
+        }
+    }
+    let end = summary.process_time_s;
+    let rows = Series::read(results)?;
+    let last = rows.column("process_time").last();
+    if last.is_none_or(|last| (last - end).abs() > 1e-9 * end.abs()) {
+        return Err(spoilt(series, "does not reach to its end"));
+    }
+    let own = sum_of_store(results);
+    if own.is_some() && summary.results_sum.is_some() && own != summary.results_sum {
+        return Err(spoilt(store, "has another content than the run left in it"));
+    }
+    for name in [files::GAS, files::PARTICLES] {
+        for (_, file) in collection(results, name)? {
+            if !file.is_file() {
+                return Err(spoilt(file, "is missing"));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Makes room for a run that begins again.

@@ -114,7 +114,10 @@ impl ClaimedFolder {
                 .flatten()
                 .filter_map(|name| name.to_str())
         };
-        let of_a_run = before().any(|name| name == LOCK);
+        // A run's lock is empty; a file of that name with something in it is another's.
+        let empty =
+            |name: &str| fs::metadata(self.out.join(name)).is_ok_and(|data| data.len() == 0);
+        let of_a_run = before().any(|name| name == LOCK && empty(name));
         let in_the_way = |name: &&str| is_computed(name) || !of_a_run && is_written(name);
         let found: Vec<String> = before()
             .filter(in_the_way)

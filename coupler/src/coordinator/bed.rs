@@ -18,7 +18,8 @@ pub(super) struct MappedBed {
     pub bed: Bed,
     /// Of one real particle of each row, in m³.
     pub solid_volume: Vec<f64>,
-    position: Vec<Vec3>,
+    /// In m.
+    pub position: Vec<Vec3>,
     radius: Vec<f64>,
 }
 

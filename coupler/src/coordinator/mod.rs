@@ -267,7 +267,9 @@ impl CoupledRun {
             }
         };
         self.check_finite(&window)?;
+        let through = self.gone_through_outlets(&window);
         self.take_out_used_up(supervisor, used_up)?;
+        self.discharge(supervisor, &through)?;
         self.take_out_lost(supervisor)?;
         self.resize(supervisor)?;
         self.last = Some(window);

@@ -67,6 +67,38 @@ impl CoupledRun {
         Ok(())
     }
 
+    /// Ids of particles that left the mesh within a window, on a way through an outlet that takes all.
+    pub(super) fn gone_through_outlets(&self, window: &Window) -> Vec<u64> {
+        let feeds = &self.plan.feeds_and_outlets;
+        if !feeds.lets_out() || self.holds(window) {
+            return Vec::new();
+        }
+        let fields = self.parts.particles.fields();
+        let before = &self.bed.mapped.position;
+        let rows = self.bed.outside(fields.position).into_iter();
+        rows.filter(|&row| feeds.lets_out_between([before[row], fields.position[row]]))
+            .map(|row| fields.id[row])
+            .collect()
+    }
+
+    /// Takes particles out that left through outlets, and books them as discharged.
+    pub(super) fn discharge(
+        &mut self,
+        supervisor: &Supervisor,
+        ids: &[u64],
+    ) -> Result<(), RunError> {
+        if ids.is_empty() {
+            return Ok(());
+        }
+        let own = self.parts.particles.fields().id.iter().enumerate();
+        let rows = own.filter(|(_, id)| ids.contains(id));
+        let rows = rows.map(|(row, _)| row).collect();
+        let moved = self.take_out(supervisor, rows)?;
+        let [_, went] = &mut self.ledger.fed_and_discharged;
+        went.add_all(&moved.gone);
+        Ok(())
+    }
+
     /// Takes particles out that their models have used up, and books what is left of them.
     pub(super) fn take_out_used_up(
         &mut self,

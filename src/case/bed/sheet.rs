@@ -28,6 +28,8 @@ pub(in crate::case) struct Entry {
     pub velocity: Option<Vec3>,
     /// Its angular velocity in rad/s, where the file states one.
     pub spin: Option<Vec3>,
+    /// Its statistical weight, where the file states one.
+    pub weight: Option<f64>,
     /// Its density in kg/m³ or its mass in kg, where the file states one.
     pub heaviness: Option<Heaviness>,
 }
@@ -87,7 +89,7 @@ const SPIN: [[&str; 3]; 3] = [
 ];
 
 /// Names under which people write what is read under another one, alone or beside a unit; and what to do.
-const MEANT: [(&[&str], &str); 8] = [
+const MEANT: [(&[&str], &str); 7] = [
     (
         &[
             "d",
@@ -112,10 +114,6 @@ const MEANT: [(&[&str], &str); 8] = [
     (
         &["density", "dichte", "rho"],
         "name it `density` (in kg/m^3), or leave it out",
-    ),
-    (
-        &["weight"],
-        "`weight` of the population in the case counts; leave it out",
     ),
     (
         &["mass", "masse"],
@@ -191,7 +189,10 @@ const DENSITY: [&str; 2] = ["density", "rho"];
 
 const MASS: [&str; 1] = ["mass"];
 
-const TYPE: [&str; 1] = ["type"];
+/// Results of Calcine have the index of the population.
+const TYPE: [&str; 2] = ["type", "population"];
+
+const WEIGHT: [&str; 1] = ["weight"];
 
 const ID: [&str; 1] = ["id"];
 
@@ -325,7 +326,10 @@ impl Sheet {
         };
         let kinds = self.column(&TYPE);
         if choice.kind.is_some() && kinds.is_none() {
-            return Err((None, "it has no column `type` to choose by".into()));
+            return Err((
+                None,
+                "it has no column `type` or `population` to choose by".into(),
+            ));
         }
         let wanted = |index: &usize| match (choice.kind, kinds) {
             (Some(kind), Some(kinds)) => kinds[*index] == kind as f64,
@@ -349,7 +353,7 @@ impl Sheet {
         let own = self.column(&DIAMETER).map(|list| (list, 1.0));
         let own = own.or_else(|| self.column(&RADIUS).map(|list| (list, 2.0)));
         self.check_sizes(&order)?;
-        let temperature = self.column(&TEMPERATURE);
+        let (temperature, weight) = (self.column(&TEMPERATURE), self.column(&WEIGHT));
         let (density, mass) = (self.column(&DENSITY), self.column(&MASS));
         let heaviness = |index: usize| match (density, mass) {
             (Some(list), _) => Some(Heaviness::Density(list[index])),
@@ -381,7 +385,10 @@ impl Sheet {
                 let what = if factor == 1.0 { "diameter" } else { "radius" };
                 positive(what, index, list[index]).map(|value| factor * value)
             });
-            let temperature = temperature.map(|list| positive("temperature", index, list[index]));
+            let stated = |what: &str, list: Option<&[f64]>| {
+                list.map(|list| positive(what, index, list[index]))
+                    .transpose()
+            };
             let vector = |what: &str, lists: [&[f64]; 3]| {
                 let value = Vec3::from(lists.map(|list| list[index]));
                 match value.iter().all(|one| one.is_finite()) {
@@ -398,7 +405,8 @@ impl Sheet {
                 row: self.row(index),
                 centre,
                 diameter: diameter.transpose()?,
-                temperature: temperature.transpose()?,
+                temperature: stated("temperature", temperature)?,
+                weight: stated("weight", weight)?,
                 velocity: velocity.transpose()?,
                 spin: spin.transpose()?,
                 heaviness: heaviness(index),
@@ -421,6 +429,7 @@ pub(super) fn is_read(name: &str) -> bool {
             &MASS,
             &TYPE,
             &ID,
+            &WEIGHT,
         ]
         .iter()
         .any(|names| names.contains(&name))

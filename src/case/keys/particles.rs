@@ -53,7 +53,7 @@ const PLACE_REGION: &[Key] = &[
 #[rustfmt::skip]
 const PLACE: &[Key] = &[
     key("grid", Table(PLACE_GRID), OneOf, "A regular stacking. Either this or `file`.", "{ first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }"),
-    key("file", Path, OneOf, "Particles of a file: `.csv`, a LIGGGHTS text dump, `.vtk` (ASCII), `.vtp` or `.vtu` (ASCII or raw). Lengths in m; diameter or radius and temperature where it has them.", "\"bed.csv\""),
+    key("file", Path, OneOf, "Particles of a file: `.csv`, a LIGGGHTS text dump, `.vtk` (ASCII), `.vtp` or `.vtu` (ASCII or raw). Lengths in m; diameter or radius, temperature, velocity and weight where it has them.", "\"bed.csv\""),
     key("height", Number(D::LENGTH, Positive), Without("with `packing`, either this or `region`"), "Height of the packing above the bottom of the mesh.", "\"145 mm\""),
     key("region", Table(PLACE_REGION), Without("with `packing`, either this or `height`"), "What the packing fills: a layer of a generated mesh (`from`, `to`), so that populations lie one above the other, or a box or an upright cylinder within any mesh.", "{ from = \"60 mm\", to = \"90 mm\" }"),
     key("solid_fraction", Number(D::NONE, Within(0.0, 0.74)), Without("with `random`, either this or `number`"), "Volume of spheres over the filled space, layers at the walls included; up to about 0.59 with equal spheres.", "0.58"),
@@ -61,7 +61,7 @@ const PLACE: &[Key] = &[
     key("seed", Whole(0, MOST), Without("required with `random`"), "Equal seeds give equal packings, bit for bit.", "1"),
     key("packing", Choice(words::<PackingName>), OneOf, "A packing from wall to wall of a generated mesh, or of a region's: random by geometry alone, without gravity, or a regular stacking of whole spheres from the bottom on.", "\"random\""),
     key("timestep", Whole(0, MOST), Without("the last one"), "The snapshot of a dump.", "20000"),
-    key("type", Whole(0, MOST), Without("all"), "Only particles whose column `type` says so.", "1"),
+    key("type", Whole(0, MOST), Without("all"), "Only particles whose column `type` says so; of results of Calcine, whose `population` does (from 0).", "1"),
 ];
 
 #[rustfmt::skip]
@@ -73,7 +73,7 @@ pub(super) const PARTICLES: &[Key] = &[
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at the start; of free particles.", "\"0 0 -0.1 m/s\""),
     key("temperature", Number(D::TEMPERATURE, Positive), OneOf, "Temperature at the start. Either this or `prescribed_temperature`.", "\"300 K\""),
     key("prescribed_temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature over process time, whatever heat the particles take or give: a boundary condition. What that takes from outside is `prescribed_heat` in the ledger. Not of a material that reacts. Either this or `temperature`.", "[[\"0 s\", \"300 K\"], [\"10 min\", \"600 K\"]]"),
-    key("weight", Number(D::NONE, Positive), Default("1"), "Statistical weight: how many real particles of this diameter each particle stands for, in all that it exchanges with the gas. Other than 1 for motion = \"frozen\" and \"parcels\" only, and without heat between particles.", "2.5"),
+    key("weight", Number(D::NONE, Positive), Default("1"), "Statistical weight: how many real particles of this diameter each particle stands for, in all that it exchanges with the gas. Other than 1 for motion = \"frozen\" and \"parcels\" only, and without heat between particles. Where a file of particles has a column `weight`, that counts.", "2.5"),
     key("place", Table(PLACE), Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres of two populations may overlap by 5 % of the sum of their radii, of one population by 20 %.", "{ file = \"bed.csv\" }"),
 ];
 
