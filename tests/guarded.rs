@@ -198,7 +198,6 @@ fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
         ("dp", "name it `diameter`"),
         ("Diamètre", "name it `diameter`"),
         ("sphere size (mm)", "name it `diameter`"),
-        ("weight", "`weight` of the population"),
         ("rho [kg/m3]", "name it `density`"),
     ] {
         let rows = format!("x,y,z,{name}\n0.005,0.005,0.29,1\n");
@@ -210,6 +209,7 @@ fn columns_under_another_name_are_refused_with_the_name_that_is_read() {
         "pressure",
         "c_stress[1]",
         "moisture",
+        "weight",
         "material",
         "number",
         "mass_fraction_H2O",
@@ -387,7 +387,7 @@ fn a_pressure_of_a_patch_off_that_of_the_gas_is_warned_of() {
     assert!(!warned("moving", &[&top("0.99 atm")], words));
 }
 
-/// A sphere of 5 mm that cools by radiation: an implicit step of 10 s is off by 0.11 times its rate times the step.
+/// A sphere of 5 mm that cools by radiation: an implicit step of 10 s is off by up to 0.184 times its rate times the step.
 #[test]
 fn the_error_of_radiation_over_a_window_is_told() {
     let set = [
@@ -405,7 +405,7 @@ fn the_error_of_radiation_over_a_window_is_told() {
     let told = String::from_utf8(output.stdout).unwrap();
     // h_r A/(m c) = 6 h_r/(d rho c), h_r = 4 0.8 sigma 1000^3 W/(m^2 K), at windows of 2 ms.
     let rate = 6.0 * 4.0 * 0.8 * 5.670_374_419e-8 * 1e9 / (2e-3 * 2500.0 * 840.0);
-    let line = format!("error of radiation           {:.2e}", 0.11 * rate * 2e-3);
+    let line = format!("error of radiation           {:.2e}", 0.184 * rate * 2e-3);
     assert!(
         told.contains(&line),
         "{line}: {told}{}",

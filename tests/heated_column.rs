@@ -69,7 +69,7 @@ fn native_parts_agree_with_an_independent_integration() {
     let directory = tempfile::tempdir().unwrap();
     let rows = column::integrate(2.1e6, 600.0, 1.0, 2e-3);
     // AF = 50 as in the case: implicit steps of 50 ms leave 0.014 % of the span of 100 K
-    // (docs/theory.md, TSM-8: about 0.11 hA AF dt/(m c) = 0.014 %); asked for are 0.5 % and, of the
+    // (docs/theory.md, TSM-8: at most 0.18 hA AF dt/(m c) = 0.023 %); asked for are 0.5 % and, of the
     // pressure drop, 1 %.
     let out = directory.path().join("af50");
     let (code, text) = calcine(&["run"], &out);

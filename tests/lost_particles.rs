@@ -88,6 +88,31 @@ fn particles_that_leave_are_taken_out_booked_and_warned_of() {
 }
 
 #[test]
+fn what_leaves_through_an_outlet_within_a_window_is_discharged() {
+    // 1 mm thick; beads fall 6 mm in a window.
+    let outlet = "outlets=[{ name = \"hole\", region = { box = { from = \"-1 -1 0 mm\", to = \"17 17 1 mm\" } } }]";
+    for particles in ["native", "liggghts"] {
+        let out = tempfile::tempdir().unwrap();
+        let more = [outlet, "time.motion_window=10 ms"];
+        let ended = run(out.path(), &["--particles", particles], &more);
+        let told = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert!(ended.status.success(), "{particles}: {told}");
+        let summary = Summary::read(out.path()).unwrap();
+        let passed = &summary.passed;
+        assert!(passed.discharged.rows > 50 && passed.lost.rows == 0);
+        for name in ["mass", "energy", "momentum", "particle_mass"] {
+            let error = summary.ledger.lines[name].relative_error;
+            assert!(error < 1e-10, "{particles}, {name}: {error}");
+        }
+    }
+    // One with a rate of its own takes no more than that.
+    let out = tempfile::tempdir().unwrap();
+    let slow = outlet.replace(" region", " mass_rate = \"1e-9 kg/s\", region");
+    let ended = run(out.path(), &[], &[&slow, "time.motion_window=10 ms"]);
+    assert_eq!(ended.status.code(), Some(i32::from(exit::DIVERGED)));
+}
+
+#[test]
 fn a_run_that_lost_particles_is_stopped_and_resumed_to_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
     let set = [

@@ -205,6 +205,53 @@ fn a_bed_with_weights_resumes_to_the_same_bits() {
 }
 
 #[test]
+fn a_snapshot_brings_its_weights() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = column(&folder.path().join("bed.csv"), 1);
+    let mut keys = vec![place.as_str(), "particles[0].weight=1.7"];
+    keys.extend(COLUMN);
+    let [first, second] = ["first", "second"].map(|name| folder.path().join(name));
+    let case = program::shipped("heated-column");
+    program::run(&case, &first, &[], &keys);
+    let snapshot = collection(&first, "particles.pvd")
+        .unwrap()
+        .pop()
+        .unwrap()
+        .1;
+    let place = format!("particles[0].place={{ file = \"{}\" }}", snapshot.display());
+    program::run(
+        &case,
+        &second,
+        &[],
+        &[&[place.as_str()], &COLUMN[..]].concat(),
+    );
+    closes(&second);
+    assert_eq!(last(&second, "particles.pvd")["weight"].values, [1.7; 10]);
+    // Of those of a population of its own.
+    let none = place.replace(" }", ", type = 1 }");
+    let refused = program::command(&case, &second, &[], &[&none])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(told.contains("no particle of type 1"), "{told}");
+    // What is free stands for itself.
+    let refused = program::command(
+        &program::shipped("settling-sphere"),
+        &second,
+        &[],
+        &[&place],
+    )
+    .output()
+    .unwrap();
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        told.contains("the weight is 1.7, but the particles are free"),
+        "{told}"
+    );
+}
+
+#[test]
 fn weights_go_with_their_particles_to_two_ranks_and_into_comparisons() {
     let folder = tempfile::tempdir().unwrap();
     let case = program::shipped("lime-burning");

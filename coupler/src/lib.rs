@@ -33,6 +33,7 @@ pub mod paths;
 pub mod periodic_motion;
 pub mod periodicity;
 pub mod physical;
+pub mod regular_file;
 pub mod setup;
 pub mod smoother;
 pub mod species_coupling;

@@ -77,6 +77,8 @@ pub enum LostParticles {
     End,
     /// The coordinator takes them out after the window in which they left; a part must not lose them before.
     TakeOut,
+    /// Those that left through an outlet the coordinator takes out, others end the run; a part must not lose them before.
+    Through,
 }
 
 /// Elastic constants of a material.

@@ -90,7 +90,7 @@ pub enum PlantError {
     },
     /// Aggregation that has reached the end of the grid by a kernel that gels.
     #[error(
-        "{place} at {time} s: {share:.3e} of the mass has grown into the last size class by a kernel of degree {degree:.3}, which gels: above degree 1 particles become infinitely large in finite time; end the run before, lower the kernel, or take one of degree 1 or less", time = Brief(*.time))]
+        "{place} at {time} s: {share:.3e} of the mass has grown into the last size class by a kernel of degree {degree:.3}, which gels: above degree 1 particles become infinitely large in finite time; end the run before, lower the kernel, take one of degree 1 or less, or let the size classes end far above what the kernel makes", time = Brief(*.time))]
     Gels {
         /// Unit.
         place: String,
@@ -101,6 +101,20 @@ pub enum PlantError {
         /// Degree of homogeneity of the kernel.
         degree: f64,
     },
+    /// A balance of enthalpy that closes below absolute zero only.
+    #[error(
+        "{place} at {time} s comes to {temperature} K: what evaporates there takes more heat than there is; bring more or hotter gas, more heat, or less liquid", time = Brief(*.time), temperature = Brief(*.temperature))]
+    Frozen {
+        /// Stream or unit.
+        place: String,
+        /// Time in s.
+        time: f64,
+        /// Temperature in K.
+        temperature: f64,
+    },
+    /// What is followed was to stop at this time in s.
+    #[error("it was stopped at {time} s", time = Brief(*.0))]
+    Interrupted(f64),
     /// Two units of one name.
     #[error("two units are named \"{0}\"; rename one of them")]
     DuplicateUnit(String),

@@ -176,6 +176,50 @@ impl StreamLayout {
         classes.map(|class| class.iter().sum()).collect()
     }
 
+    /// Combinations of attribute classes; 1 without attributes.
+    pub fn cells(&self) -> usize {
+        self.inner / self.compounds.len()
+    }
+
+    /// Classes of each attribute in a combination, from 0.
+    pub fn classes_of(&self, cell: usize) -> Vec<usize> {
+        let mut left = cell;
+        let mut classes: Vec<usize> = self
+            .attributes
+            .iter()
+            .rev()
+            .map(|attribute| {
+                let class = left % attribute.classes;
+                left /= attribute.classes;
+                class
+            })
+            .collect();
+        classes.reverse();
+        classes
+    }
+
+    /// Mass of each size class in kg/s of the particles of some combinations of attribute classes.
+    pub fn by_size_where(&self, stream: &[f64], takes: impl Fn(&[usize]) -> bool) -> Vec<f64> {
+        let cells = (0..self.cells()).filter(|&cell| takes(&self.classes_of(cell)));
+        let cells: Vec<usize> = cells.collect();
+        let count = self.compounds.len();
+        let classes = stream[..self.solids()].chunks_exact(self.inner);
+        classes
+            .map(|class| {
+                let own = cells.iter().map(|cell| &class[cell * count..][..count]);
+                own.flatten().sum()
+            })
+            .collect()
+    }
+
+    /// All classes of all attributes, each with the index of its attribute and its own from 0.
+    pub fn attribute_classes(&self) -> Vec<(usize, usize)> {
+        let attributes = self.attributes.iter().enumerate();
+        attributes
+            .flat_map(|(index, attribute)| (0..attribute.classes).map(move |class| (index, class)))
+            .collect()
+    }
+
     /// Heat capacity flow in W/K, and enthalpy flow at the reference temperature in W.
     pub fn heat_capacity(&self, stream: &[f64]) -> (f64, f64) {
         let count = self.compounds.len();
@@ -263,5 +307,35 @@ mod tests {
         let found = stream[layout.enthalpy()];
         assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
         assert!(layout.temperature(&vec![0.0; layout.width()]).is_none());
+    }
+
+    #[test]
+    fn masses_of_attribute_classes_add_up_to_all() {
+        let plain = layout();
+        let attribute = |name: &str, classes| Attribute {
+            name: name.into(),
+            classes,
+        };
+        let layout = StreamLayout::new(
+            plain.grid().clone(),
+            vec![attribute("colour", 2), attribute("wet", 3)],
+            plain.compounds().to_vec(),
+        )
+        .unwrap();
+        assert_eq!(layout.cells(), 6);
+        assert_eq!(layout.classes_of(5), [1, 2]);
+        assert_eq!(layout.classes_of(2), [0, 2]);
+        assert_eq!(layout.attribute_classes()[3], (1, 1));
+        let mut stream: Vec<f64> = (0..layout.width()).map(|k| k as f64).collect();
+        let all = layout.by_size(&stream);
+        let wet = |class| layout.by_size_where(&stream, |own| own[1] == class);
+        let sum: Vec<f64> = (0..3).map(|k| wet(0)[k] + wet(1)[k] + wet(2)[k]).collect();
+        assert_eq!(sum, all);
+        // One number alone: second size class, colour 2, wet 3, the second compound.
+        stream.fill(0.0);
+        stream[12 + 5 * 2 + 1] = 7.0;
+        let one = layout.by_size_where(&stream, |own| own == [1, 2]);
+        assert_eq!(one, [0.0, 7.0, 0.0]);
+        assert_eq!(layout.by_size_where(&stream, |own| own[0] == 0), [0.0; 3]);
     }
 }

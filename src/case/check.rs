@@ -12,6 +12,7 @@ use calcine_coupler::physics::law::NONE;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::bed::{self, Choice};
+use super::conduction_step::FastestContact;
 use super::flow_numbers::FlowNumbers;
 use super::model::{Case, MeshSpec, PlacementSpec, Population, TimeSpec};
 use super::packed::BedPacking;
@@ -176,6 +177,9 @@ pub fn check_report(
         ),
         false => writeln!(text, "  buoyancy       none"),
     };
+    if let Some(fastest) = FastestContact::of(case, setup, mesh.periodicity()) {
+        let _ = writeln!(text, "  {}", fastest.line());
+    }
     for warning in &case.warnings {
         let _ = writeln!(text, "  warning: {warning}");
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use calcine_coupler::coordinator::LONGEST_STEP;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{
-    ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
+    ContactForce, Contacts, Elastic, LostParticles, Motion as Told, Pair, Wall, WallMotion,
 };
 use calcine_coupler::periodic_motion::{self, PeriodicMotionError};
 use calcine_coupler::physics::Vec3;
@@ -193,7 +193,12 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         step,
         gravity: case.gas.gravity,
         bounds: mesh.bounds().into(),
-        lost: motion.lost,
+        lost: match motion.lost {
+            LostParticles::End if case.outlets.iter().any(|one| one.rate.is_none()) => {
+                LostParticles::Through
+            }
+            lost => lost,
+        },
         periodicity: *mesh.periodicity(),
         materials: case.materials.iter().map(elastic).collect(),
         material_of: case.particles.iter().map(|one| one.material).collect(),

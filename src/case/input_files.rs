@@ -1,5 +1,6 @@
 //! The files that a case reads, and what is in them: a changed bed, mesh, wall, template or script is another case.
 
+use calcine_coupler::regular_file;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -54,7 +55,7 @@ pub(super) fn sums(case: &Case) -> BTreeMap<String, String> {
         .into_iter()
         .map(|(key, file)| {
             // A file that cannot be read is an error of the mesh or of the bed, told there.
-            let content = fs::read(&file).unwrap_or_default();
+            let content = regular_file::read(&file).unwrap_or_default();
             (key, hex(Sha256::digest(content)))
         })
         .collect();

@@ -1,5 +1,6 @@
 //! Of which kind a case file is: its key `kind`.
 
+use calcine_coupler::regular_file;
 use std::path::Path;
 
 use super::keys::{CaseKind, KINDS, kind_named, kind_names};
@@ -11,7 +12,7 @@ use super::table::nearest;
 /// The kind of a case file, with `--set key=value` applied; a bed where it states none. A file that cannot be read
 /// counts as a bed, whose reader tells why.
 pub fn kind_of(path: &Path, settings: &[String]) -> Result<&'static CaseKind, CaseErrors> {
-    match std::fs::read_to_string(path) {
+    match regular_file::read_to_string(path) {
         Ok(text) => kind_of_text(path, &text, settings),
         Err(_) => Ok(&KINDS[0]),
     }

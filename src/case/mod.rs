@@ -5,6 +5,7 @@ mod boundaries;
 pub mod buoyancy;
 pub mod cautions;
 mod check;
+mod conduction_step;
 pub mod contacts;
 pub mod expectations;
 mod fall;
@@ -60,6 +61,7 @@ pub mod warnings;
 mod words;
 mod work;
 
+use calcine_coupler::regular_file;
 use std::path::Path;
 
 pub use boundaries::mesh_of;
@@ -133,7 +135,7 @@ pub fn parse_tuning(path: &Path, text: &str, set: &[String]) -> Result<TuningCas
     let mut digest = Sha256::new();
     digest.update(case.hash.as_bytes());
     for file in &case.files {
-        digest.update(std::fs::read(file).unwrap_or_default());
+        digest.update(regular_file::read(file).unwrap_or_default());
     }
     case.hash = hex(digest.finalize());
     Ok(case)

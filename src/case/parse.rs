@@ -1,5 +1,6 @@
 //! From the text of a case file to what a reader makes of it, or to all its errors.
 
+use calcine_coupler::regular_file;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
@@ -22,7 +23,7 @@ const TITLE: &str = ".title";
 
 /// The text of a case file.
 pub(super) fn text_of(path: &Path) -> Result<String, CaseErrors> {
-    let bytes = std::fs::read(path).map_err(|cause| {
+    let bytes = regular_file::read(path).map_err(|cause| {
         one(
             path,
             "",

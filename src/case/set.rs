@@ -44,6 +44,9 @@ impl Change {
     }
 }
 
+/// Steps down from the whole case to any key.
+const DEEPEST: usize = 32;
+
 /// The text with `--set` applied, in which lines stay where they are unless a key is new, and what each changed.
 pub(super) fn apply(
     path: &Path,
@@ -70,6 +73,12 @@ pub(super) fn apply(
         let value = value.trim();
         // A bare text such as 10 s or native needs no quotes on the command line.
         let value: Value = value.parse().unwrap_or_else(|_| value.into());
+        if key.split('.').count() > DEEPEST {
+            return Err(wrong(
+                "no key lies so deep",
+                "see `calcine schema` for the keys of a case",
+            ));
+        }
         let mut item: &mut Item = document.as_item_mut();
         let mut place = String::new();
         for part in key.trim().split('.') {

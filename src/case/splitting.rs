@@ -15,10 +15,10 @@ use super::ranges;
 use super::units::short3;
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
-const WARNING: f64 = 0.1;
+pub(super) const WARNING: f64 = 0.1;
 
-/// Error of an implicit Euler step in shares of the span of temperatures, over the step times the rate (docs/theory.md, TSM-8).
-const STEP_ERROR: f64 = 0.11;
+/// Largest error of implicit Euler steps after a jump in shares of it, over the step times the rate: 1/(2 e) (docs/theory.md, TSM-8).
+pub(super) const STEP_ERROR: f64 = 0.184;
 
 /// Growth of the drag coefficient from rest to the terminal velocity above which it is told of.
 const GROWN: f64 = 1.5;
@@ -141,14 +141,14 @@ impl<'a> Splitting<'a> {
                 self.ratio
             ),
             format!(
-                "0.11 hA AF dt/(m c), error of process storage       {:.2e}{}",
+                "0.18 hA AF dt/(m c), error of process storage       {:.2e}{}",
                 self.error,
                 above(self.error)
             ),
         ];
         lines.extend(self.radiation.map(|error| {
             format!(
-                "0.11 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
+                "0.18 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
                 above(error)
             )
         }));
@@ -173,10 +173,7 @@ impl<'a> Splitting<'a> {
     /// What is to be warned of.
     pub(super) fn warnings(&self, case: &Case) -> Vec<String> {
         let name = &self.population.name;
-        let step = match case.time.process_step {
-            Some(_) => "shorten `time.process_step`",
-            None => "lower `time.acceleration`, or shorten `time.motion_window`",
-        };
+        let step = shorter(case);
         let mut all = Vec::new();
         if case.time.storage == GasStorage::Accelerated && self.ratio > WARNING {
             all.push(format!(
@@ -187,13 +184,13 @@ impl<'a> Splitting<'a> {
         }
         if self.error > 1.0 {
             all.push(format!(
-                "0.11 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: its temperature takes that of the gas within a fraction of a window, so \
+                "0.18 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: its temperature takes that of the gas within a fraction of a window, so \
                  that its way there is not resolved; {step}",
                 short3(self.error)
             ));
         } else if self.error > WARNING {
             all.push(format!(
-                "0.11 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: within a window its temperature comes so far towards that of \
+                "0.18 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: within a window its temperature comes so far towards that of \
                  the gas that the error is this share of their difference; {step}",
                 short3(self.error)
             ));
@@ -238,10 +235,21 @@ impl<'a> Splitting<'a> {
     }
 }
 
+/// What to do about windows that are long in process time.
+pub(super) fn shorter(case: &Case) -> &'static str {
+    match case.time.process_step {
+        Some(_) => "shorten `time.process_step`",
+        None => "lower `time.acceleration`, or shorten `time.motion_window`",
+    }
+}
+
 /// What to do about particles of a material that are thin and should not be.
 fn remedy(case: &Case, material: usize) -> String {
     let chemistry = &case.chemistry;
-    let start = chemistry.compositions.get(material).map_or(&[][..], |own| own);
+    let start = chemistry
+        .compositions
+        .get(material)
+        .map_or(&[][..], |own| own);
     let consumed = |one: &&Reaction| {
         let held = |s: usize| start.get(s).is_some_and(|y| *y > 0.0);
         one.rate.needs_thin() && one.solids.iter().any(|&(s, n)| n < 0.0 && held(s))

@@ -1,5 +1,6 @@
 //! STL files, ASCII and binary: triangles of walls.
 
+use calcine_coupler::regular_file;
 use std::path::Path;
 
 use calcine_coupler::physics::Vec3;
@@ -70,7 +71,7 @@ pub enum StlError {
 
 /// The triangles of a file, its lengths times `scale`.
 pub fn read(path: &Path, scale: f64) -> Result<Stl, StlError> {
-    let bytes = std::fs::read(path)?;
+    let bytes = regular_file::read(path)?;
     let all = match binary(&bytes)? {
         Some(triangles) => triangles,
         None => ascii(&String::from_utf8_lossy(&bytes))?,

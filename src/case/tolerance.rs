@@ -4,6 +4,29 @@ use super::model::ToleranceBand;
 use super::table::TableReader;
 use super::units::{Dimension, difference};
 
+/// A band about a value; a share of nothing is none.
+pub(super) fn band_about(
+    table: &TableReader<'_>,
+    value: Option<f64>,
+    dimension: Dimension,
+) -> Option<ToleranceBand> {
+    let band = band(table, "within", dimension)?;
+    if value == Some(0.0) && matches!(band, ToleranceBand::Relative(_)) {
+        let help = format!(
+            "write a width, {}, such as \"{}\"",
+            dimension.words(),
+            dimension.example()
+        );
+        table.fail(
+            "within",
+            "is a share of a value of 0, which has no width",
+            help,
+        );
+        return None;
+    }
+    Some(band)
+}
+
 /// A band such as "5 %" or "0.5 K".
 pub(super) fn band(
     table: &TableReader<'_>,

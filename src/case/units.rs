@@ -134,7 +134,11 @@ fn raised(part: &str) -> Option<(&str, &str)> {
 }
 
 fn unit(text: &str) -> Result<Unit, UnitError> {
-    let plain = text.replace('²', "^2").replace('³', "^3");
+    // The Greek letter is the sign for micro on many keyboards.
+    let plain = text
+        .replace('²', "^2")
+        .replace('³', "^3")
+        .replace('\u{3bc}', "µ");
     let text = plain.as_str();
     if text == "degC" || text == "°C" {
         return Ok(Unit {
@@ -183,6 +187,8 @@ fn unit(text: &str) -> Result<Unit, UnitError> {
 /// Numbers followed by one unit, in SI; the unit may be missing only for plain numbers.
 pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
     let mut numbers = Vec::new();
+    // The minus sign of typeset texts.
+    let text = text.replace('\u{2212}', "-");
     let mut rest = text.trim();
     while !rest.is_empty() {
         let end = rest.find(char::is_whitespace).unwrap_or(rest.len());
@@ -210,7 +216,7 @@ pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
         break;
     }
     if numbers.is_empty() {
-        return Err(UnitError::Number(text.into()));
+        return Err(UnitError::Number(text));
     }
     if rest.is_empty() {
         return Ok((numbers, Dimension::NONE));
@@ -225,7 +231,7 @@ pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
         .map(|number| number * factor + offset)
         .collect();
     if converted.iter().any(|number| !number.is_finite()) {
-        return Err(UnitError::Number(text.into()));
+        return Err(UnitError::Number(text));
     }
     Ok((converted, dimension))
 }

@@ -5,6 +5,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::cautions::cautions;
+use super::conduction_step::FastestContact;
 use super::flow_numbers::FlowNumbers;
 use super::model::Case;
 use super::packed::BedPacking;
@@ -39,6 +40,8 @@ pub fn warnings(
     all.extend(size_cautions::pores(case));
     all.extend(mesh_shape::report(mesh).1);
     all.extend(contacts::warnings(case, mesh, setup));
+    let fastest = FastestContact::of(case, setup, mesh.periodicity());
+    all.extend(fastest.and_then(|one| one.warning(case)));
     all.extend(packing.warning(case));
     let flow = FlowNumbers::of(case, mesh, setup, packing);
     all.extend(flow.iter().flat_map(|flow| flow.warnings(case)));
@@ -71,7 +74,7 @@ pub(in crate::case) mod tests {
     fn what_check_marks_in_its_lines_is_a_warning() {
         let all = warned("burning-beads", &[]);
         let found = |words: &str| all.iter().any(|one| one.contains(words));
-        assert!(found("0.11 hA AF dt/(m c) of `"), "{all:?}");
+        assert!(found("0.18 hA AF dt/(m c) of `"), "{all:?}");
         let all = warned("reactions", &[]);
         let drag = all.iter().filter(|one| one.contains("the law of drag"));
         assert_eq!(drag.count(), 1, "{all:?}");

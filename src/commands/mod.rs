@@ -35,6 +35,7 @@ use std::sync::Arc;
 use calcine_adapters::find::find_program;
 use calcine_wire::SolverNetwork;
 use clap::{Parser, Subcommand};
+use signal_hook::consts::SIGXFSZ;
 
 use crate::exit;
 use console::say;
@@ -75,6 +76,8 @@ pub fn main() -> ExitCode {
 /// needs it goes to the program `calcine-mpi`. Gives the exit code.
 pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
     let arguments = Arguments::parse();
+    // A limit on the size of files is an error of the write that meets it, told with its file, and not the end of the process.
+    let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let outcome = match &arguments.command {
         Command::Run(arguments) => kinds::run(arguments, network, become_mpi),
         Command::Check(arguments) => kinds::check(arguments),

@@ -351,6 +351,7 @@ pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
         sweep::table_is_free(path)?;
     }
     let jobs = sweep::jobs(&out, combinations);
+    sweep::own_table(&out, names.iter().map(String::as_str))?;
     let options = Vec::new();
     let table = |points: &[sweep::Point<'_>]| sweep_table(&names, points);
     let (ends, table) = arguments.follow(&jobs, (&out, options), table)?;

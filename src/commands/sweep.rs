@@ -9,7 +9,7 @@ use super::console::{printed, say};
 use super::failure::Failure;
 use super::inputs::{own_or_new, read_case, results_folder};
 use super::jobs::{Job, JobEnd, Jobs};
-use super::sweep_table::SweepTable;
+use super::sweep_table::{SweepTable, TABLE};
 use crate::assembly::{GasBackend, ParticleBackend};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;
@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "KEY=VALUE")]
     reference: Option<String>,
     /// What deviations are divided by, in K [default: the reference's own span of temperatures].
-    #[arg(long, value_name = "KELVIN", requires = "reference")]
+    #[arg(long, value_name = "KELVIN", requires = "reference", value_parser = above_zero)]
     span: Option<f64>,
     /// Folder of the sweep [default: results/NAME-sweep].
     #[arg(long, value_name = "DIR")]
@@ -53,6 +53,13 @@ pub(super) struct Arguments {
     /// Shows no progress bar.
     #[arg(long)]
     pub(super) quiet: bool,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    number
+        .filter(|number| number.is_finite() && *number > 0.0)
+        .ok_or_else(|| "it needs a number above 0, in K".into())
 }
 
 impl Arguments {
@@ -69,21 +76,37 @@ impl Arguments {
 
 /// The keys that `--set KEY=A,B,C` names, and every combination of their values as settings.
 pub(super) fn combinations(set: &[String]) -> Result<(Vec<String>, Vec<Vec<String>>), Failure> {
+    let axes = axes(set)?;
+    Ok((keys(&axes).map(str::to_owned).collect(), combine(&axes)))
+}
+
+/// The values of each key that is swept, as settings.
+fn axes(set: &[String]) -> Result<Vec<Vec<String>>, Failure> {
     let axes: Vec<Vec<String>> = set
         .iter()
         .map(|text| axis(text))
         .collect::<Result<_, _>>()?;
-    let keys = axes.iter();
-    let keys = keys.filter_map(|axis| Some(axis.first()?.split_once('=')?.0.to_owned()));
-    Ok((keys.collect(), combine(&axes)))
+    let mut seen = BTreeSet::new();
+    let twice = keys(&axes).find(|key| !seen.insert(*key));
+    match twice.map(str::to_owned) {
+        None => Ok(axes),
+        Some(key) => {
+            let message = format!(
+                "`{key}` stands in two `--set`: write all of its values in one, separated by commas"
+            );
+            Err(Failure::new(exit::CASE, message))
+        }
+    }
+}
+
+/// The keys that are swept.
+fn keys(axes: &[Vec<String>]) -> impl Iterator<Item = &str> {
+    axes.iter()
+        .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key))
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let axes = arguments
-        .set
-        .iter()
-        .map(|text| axis(text))
-        .collect::<Result<Vec<_>, _>>()?;
+    let axes = axes(&arguments.set)?;
     let reference = arguments.reference.as_deref();
     if let Some(value) = reference
         && !axes.iter().flatten().any(|setting| setting == value)
@@ -98,6 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         folder.into()
     });
     let jobs = jobs(&out, combine(&axes));
+    own_table(&out, keys(&axes))?;
     // Every case and folder is checked before the first one runs, and that the table can be written after the last one.
     if let Some(path) = &arguments.table {
         table_is_free(path)?;
@@ -205,6 +229,31 @@ pub(super) fn ending(code: u8) -> String {
     }
 }
 
+/// Refuses a folder whose `sweep.csv` is no table of a sweep of some key.
+pub(super) fn own_table<'k>(
+    out: &Path,
+    keys: impl Iterator<Item = &'k str>,
+) -> Result<(), Failure> {
+    let path = out.join(TABLE);
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        return Ok(());
+    };
+    let head = text.lines().next().unwrap_or_default();
+    let ends = ["verdict", "\"verdict\""];
+    let own = keys.into_iter().any(|key| head.contains(key))
+        || ends
+            .iter()
+            .any(|end| head.split(',').next_back() == Some(end));
+    if text.is_empty() || own {
+        return Ok(());
+    }
+    let message = format!(
+        "{} is there, and is no table of a sweep: name another folder with `--out`, or move it",
+        path.display()
+    );
+    Err(Failure::new(exit::CASE, message))
+}
+
 /// Refuses a file for the table that cannot be written, or that holds something else; it stays as it is, or absent.
 pub(super) fn table_is_free(path: &Path) -> Result<(), Failure> {
     own_or_new(path, '|', "--table")?;
@@ -297,11 +346,25 @@ fn folder_name(settings: &[String]) -> String {
         let key = key.rsplit('.').next().unwrap_or(key);
         let plain = |letter: char| match letter {
             '/' => Some('p'),
-            ' ' | '"' | '^' | '\'' => None,
+            '"' | '^' | '\'' => None,
             letter if letter.is_alphanumeric() || "._+-".contains(letter) => Some(letter),
             _ => Some('-'),
         };
-        let words = [key, value].map(|text| text.chars().filter_map(plain).collect::<String>());
+        let words = [key, value].map(|text| {
+            // Blanks between numbers tell one list from another.
+            let parts: Vec<String> = text
+                .split_whitespace()
+                .map(|part| part.chars().filter_map(plain).collect())
+                .collect();
+            let is_number =
+                |part: &str| part.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+            parts.iter().fold(String::new(), |text, part| {
+                match text.is_empty() || !is_number(part) {
+                    true => text + part,
+                    false => text + "_" + part,
+                }
+            })
+        });
         words.join("=")
     };
     let name = settings.iter().map(part).collect::<Vec<String>>().join(",");
@@ -318,10 +381,7 @@ fn table(
 ) -> Result<SweepTable, Failure> {
     let failed = |error: &ResultsError| Failure::told(exit::OTHER, error);
     let mut table = SweepTable {
-        header: axes
-            .iter()
-            .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key.to_owned()))
-            .collect(),
+        header: keys(axes).map(str::to_owned).collect(),
         rows: Vec::new(),
     };
     table.header.push("loop s".into());

@@ -10,6 +10,7 @@ mod file;
 mod units;
 mod yaml;
 
+use calcine_coupler::regular_file;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::physics::kinetics::{Collider, Mechanism, ReactionStatement};
@@ -70,7 +71,7 @@ fn is_yaml(path: &Path) -> bool {
 }
 
 fn contents(path: &Path) -> Result<String, MechanismError> {
-    let bytes = std::fs::read(path)
+    let bytes = regular_file::read(path)
         .map_err(|cause| placed(path, (None, format!("cannot be read: {cause}"))))?;
     // Old files have comments in Latin letters of one byte.
     Ok(String::from_utf8_lossy(&bytes).into_owned())

@@ -1,15 +1,25 @@
 //! The checkpoint of a plant: all that decides how its run goes on, and how far its files were written.
 
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::coordinator::CheckpointPaths;
 use calcine_flowsheet::PlantStep;
 use serde::{Deserialize, Serialize};
 
+use super::error::PlantRunError;
+use crate::case::units::shown;
+use crate::results::marked::FileMark;
 use crate::results::{ResultsError, files};
 
-/// Folder and name of the file.
-const FOLDER: &str = "checkpoint";
+/// Name of the file.
 const FILE: &str = "plant.json";
+
+/// Where the checkpoints of a plant are: the last one and that before it, each with the sums of its files.
+pub(super) fn paths(folder: &Path) -> CheckpointPaths {
+    CheckpointPaths::of(folder, FILE)
+}
 
 /// What is kept. Numbers are finite, so that JSON gives them back to the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,10 +28,10 @@ pub(super) struct PlantCheckpoint {
     pub case_hash: String,
     /// Rows of the series, the one of this moment included.
     pub rows: u64,
-    /// Length of `series.csv` in bytes.
-    pub series: u64,
-    /// Length of `distributions.csv` in bytes.
-    pub distributions: u64,
+    /// How far `series.csv` was.
+    pub series: FileMark,
+    /// How far `distributions.csv` was.
+    pub distributions: FileMark,
     /// Time in s of the next distributions.
     pub next_distributions: f64,
     /// Wall time so far in s.
@@ -45,10 +55,10 @@ pub(super) struct PlantCheckpoint {
 pub(super) struct Written {
     /// Rows of the series.
     pub rows: u64,
-    /// Bytes of the series.
-    pub series: u64,
-    /// Bytes of the distributions.
-    pub distributions: u64,
+    /// The series.
+    pub series: FileMark,
+    /// The distributions.
+    pub distributions: FileMark,
     /// Time in s of the next distributions.
     pub next_distributions: f64,
     /// Wall time so far in s.
@@ -63,8 +73,8 @@ impl PlantCheckpoint {
         Self {
             case_hash: case_hash.to_owned(),
             rows: written.rows,
-            series: written.series,
-            distributions: written.distributions,
+            series: written.series.clone(),
+            distributions: written.distributions.clone(),
             next_distributions: written.next_distributions,
             wall: written.wall,
             from,
@@ -104,22 +114,53 @@ impl PlantCheckpoint {
         &self.unknowns
     }
 
-    /// Replaces the checkpoint of a results folder at once.
-    pub fn write(&self, folder: &Path) -> Result<PathBuf, ResultsError> {
-        files::directory(&folder.join(FOLDER))?;
-        let path = folder.join(FOLDER).join(FILE);
-        files::replace_json(&path, self)?;
-        Ok(path)
+    /// Leaves it as the last checkpoint of a results folder, the one before beside it.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, PlantRunError> {
+        let paths = paths(folder);
+        let fresh = paths.fresh();
+        match fs::remove_dir_all(&fresh) {
+            Err(cause) if cause.kind() != ErrorKind::NotFound => {
+                return Err(ResultsError::file("remove", &fresh)(cause).into());
+            }
+            _ => {}
+        }
+        let written = || -> Result<(), PlantRunError> {
+            files::directory(&fresh)?;
+            files::replace_json(&fresh.join(FILE), self)?;
+            Ok(paths.publish()?)
+        };
+        written().inspect_err(|_| {
+            // What could not be written fills the disk no longer; the last one stays.
+            let _ = fs::remove_dir_all(&fresh);
+        })?;
+        Ok(paths.committed().join(FILE))
     }
 
-    /// The checkpoint of a results folder; `None` where it has none.
-    pub fn read(folder: &Path) -> Result<Option<Self>, ResultsError> {
-        let path = folder.join(FOLDER).join(FILE);
-        if !path.is_file() {
+    /// The newest whole checkpoint of a results folder, and what is wrong with a newer one; `None` where it has none.
+    pub fn read(folder: &Path) -> Result<Option<(Self, Option<String>)>, PlantRunError> {
+        let Some(whole) = paths(folder).newest_whole()? else {
             return Ok(None);
-        }
+        };
+        let path = whole.path.join(FILE);
         let read = serde_json::from_str(&files::read(&path)?);
-        read.map(Some)
-            .map_err(|error| ResultsError::content(&path, error.to_string()))
+        let read = read.map_err(|error| ResultsError::content(&path, error.to_string()))?;
+        Ok(Some((read, whole.damage)))
+    }
+
+    /// The same of a run that goes on: the newest whole checkpoint becomes the last one. What is to be told of that.
+    pub fn recover(folder: &Path) -> Result<Option<(Self, Option<String>)>, PlantRunError> {
+        let paths = paths(folder);
+        let damage = paths.recover()?;
+        let Some((found, _)) = Self::read(folder)? else {
+            return Ok(None);
+        };
+        let told = damage.map(|damage| {
+            format!(
+                "{damage}; the run goes on from the checkpoint before it, of {} s, and the damaged one is kept as {}",
+                shown(found.time),
+                paths.damaged().display()
+            )
+        });
+        Ok(Some((found, told)))
     }
 }

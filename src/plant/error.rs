@@ -1,5 +1,6 @@
 //! Why a plant cannot be followed.
 
+use calcine_coupler::coordinator::CheckpointError;
 use calcine_flowsheet::PlantError;
 use miette::Diagnostic;
 use thiserror::Error;
@@ -17,6 +18,9 @@ pub enum PlantRunError {
     /// Results that cannot be written or read.
     #[error(transparent)]
     Results(#[from] ResultsError),
+    /// A checkpoint that cannot be written or read.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// A results folder that cannot be used.
     #[error(transparent)]
     Folder(#[from] SimulationError),
@@ -44,9 +48,13 @@ impl PlantRunError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Plant(_) => exit::DIVERGED,
-            Self::Results(ResultsError::File { .. }) => exit::OTHER,
+            Self::Results(ResultsError::File { .. } | ResultsError::Spoilt { .. })
+            | Self::Checkpoint(CheckpointError::Io { .. }) => exit::OTHER,
             Self::Folder(error) => error.exit_code(),
-            Self::Results(_) | Self::OtherPlant { .. } | Self::FromWithBed(_) => exit::CASE,
+            Self::Results(_)
+            | Self::Checkpoint(_)
+            | Self::OtherPlant { .. }
+            | Self::FromWithBed(_) => exit::CASE,
         }
     }
 

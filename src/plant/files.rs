@@ -1,8 +1,6 @@
 //! The tables of a plant's results: the series, distributions over time, and the streams at the end.
 
-use std::fs::{File, OpenOptions};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use calcine_flowsheet::{Plant, PlantRun};
 
@@ -10,67 +8,41 @@ use super::measure::{Column, field, places, state};
 use crate::case::plant::{PlantField, PlantPlace};
 use crate::results::ResultsError;
 use crate::results::files::{self, DISTRIBUTIONS, SERIES, STREAMS};
+use crate::results::marked::{FileMark, MarkedFile};
 use crate::results::sheet::{line, number, rows};
 
 /// First column of every table over time.
 const TIME: &str = "time_s";
 
 /// A table that grows by rows.
-pub(super) struct Table {
-    path: PathBuf,
-    file: File,
-    bytes: u64,
-}
+pub(super) struct Table(MarkedFile);
 
 impl Table {
     /// Begins a table with its head.
     pub fn create(folder: &Path, name: &str, head: &[String]) -> Result<Self, ResultsError> {
-        let path = folder.join(name);
-        let file = File::create(&path).map_err(ResultsError::file("create", &path))?;
-        let mut table = Self {
-            path,
-            file,
-            bytes: 0,
-        };
+        let mut table = Self(MarkedFile::create(folder.join(name))?);
         table.append(head)?;
         Ok(table)
     }
 
-    /// Opens a table and cuts it to its first bytes.
-    pub fn resume(folder: &Path, name: &str, bytes: u64) -> Result<Self, ResultsError> {
+    /// Opens a table that was checked, and cuts it to where it was.
+    pub fn resume(folder: &Path, name: &str, mark: &FileMark) -> Result<Self, ResultsError> {
         let path = folder.join(name);
-        let opened = OpenOptions::new().append(true).open(&path);
-        let file = opened.map_err(ResultsError::file("open", &path))?;
-        let length = file.metadata().map_err(ResultsError::file("read", &path))?;
-        if length.len() < bytes {
-            let fact = format!("it has {} bytes, the checkpoint {bytes}", length.len());
-            return Err(ResultsError::content(&path, fact));
-        }
-        file.set_len(bytes)
-            .map_err(ResultsError::file("cut", &path))?;
-        Ok(Self { path, file, bytes })
+        mark.cut(&path)?;
+        let text = files::read(&path)?;
+        MarkedFile::resume(path, &text).map(Self)
     }
 
     /// Appends a row.
     pub fn append(&mut self, words: &[String]) -> Result<(), ResultsError> {
-        let row = line(&self.path, words)?;
-        self.file
-            .write_all(&row)
-            .map_err(ResultsError::file("write", &self.path))?;
-        self.bytes += row.len() as u64;
-        Ok(())
+        let row = line(self.0.path(), words)?;
+        self.0.write(&row)?;
+        self.0.flush()
     }
 
-    /// Length in bytes.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    /// Hands all rows to the disk.
-    pub fn sync(&self) -> Result<(), ResultsError> {
-        self.file
-            .sync_data()
-            .map_err(ResultsError::file("write", &self.path))
+    /// Hands all rows to the disk; gives how far the table is.
+    pub fn mark(&mut self) -> Result<FileMark, ResultsError> {
+        self.0.mark()
     }
 }
 
@@ -90,16 +62,34 @@ pub(super) fn distribution_head(plant: &Plant) -> Vec<String> {
         .collect()
 }
 
-/// A row of distributions for each place: kg/s or kg by size class.
+/// Most combinations of attribute classes that have distributions of their own.
+const MOST_CELLS: usize = 400;
+
+/// A row of distributions for each place: kg/s or kg by size class; with attributes one more for each combination of their
+/// classes, named by them: `streams.feed.colour_1.wet_3`.
 pub(super) fn distribution_rows(run: &PlantRun<'_>, plant: &Plant) -> Vec<Vec<String>> {
-    let places = places(plant).into_iter();
-    places
-        .map(|(of, name)| {
-            let sizes = plant.layout().by_size(&state(run, of));
-            let words = [number(run.time()), name].into_iter();
-            words.chain(sizes.into_iter().map(number)).collect()
-        })
-        .collect()
+    let layout = plant.layout();
+    let cells = match layout.attributes().is_empty() || layout.cells() > MOST_CELLS {
+        true => 0,
+        false => layout.cells(),
+    };
+    let mut rows = Vec::new();
+    let mut add = |name: String, sizes: Vec<f64>| {
+        let words = [number(run.time()), name].into_iter();
+        rows.push(words.chain(sizes.into_iter().map(number)).collect());
+    };
+    for (of, name) in places(plant) {
+        let own = state(run, of);
+        add(name.clone(), layout.by_size(&own));
+        for cell in 0..cells {
+            let classes = layout.classes_of(cell);
+            let pairs = layout.attributes().iter().zip(&classes);
+            let words = pairs.map(|(one, class)| format!(".{}_{}", one.name, class + 1));
+            let name = name.clone() + &words.collect::<String>();
+            add(name, layout.by_size_where(&own, |other| other == classes));
+        }
+    }
+    rows
 }
 
 /// Writes the table of streams and units at the end.

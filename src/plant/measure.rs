@@ -3,6 +3,7 @@
 use calcine_flowsheet::{Plant, PlantRun};
 
 pub(super) use crate::case::plant::field;
+use crate::case::plant::{MOST_CLASSES, class_name};
 use crate::case::plant::{PlantField, PlantPlace};
 
 /// A column of the series.
@@ -16,7 +17,7 @@ pub(super) struct Column {
     pub of: PlantPlace,
     /// Which field.
     pub field: PlantField,
-    /// Compound of the field `compound`.
+    /// Compound of the field `compound`, attribute class of the field `class`.
     pub compound: Option<usize>,
 }
 
@@ -56,6 +57,14 @@ pub(super) fn columns(plant: &Plant) -> Vec<Column> {
         for (k, compound) in plant.layout().compounds().iter().enumerate() {
             let word = format!("{flow}_of_{}", compound.name);
             add(word, unit, PlantField::Compound, Some(k));
+        }
+        let classes = plant.layout().attribute_classes().len();
+        for k in (0..classes).filter(|_| classes <= MOST_CLASSES) {
+            let class = class_name(plant.layout(), k).replace(' ', "_");
+            let word = format!("solid_{flow}_of_{class}");
+            add(word, unit, PlantField::Class, Some(k));
+            let word = format!("mean_diameter_of_{class}");
+            add(word, "m", PlantField::ClassMeanDiameter, Some(k));
         }
         add("moisture".into(), "1", PlantField::Moisture, None);
         add("temperature".into(), "K", PlantField::Temperature, None);

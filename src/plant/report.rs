@@ -6,6 +6,7 @@ mod labels;
 use std::path::{Path, PathBuf};
 
 use super::files::{Distributions, TimeTable, distributions};
+use super::measure;
 use super::summary::{PlantMode, PlantSummary, PlantTuningSummary};
 use crate::case::plant::{PlantCase, read_plant_results};
 use crate::report::REPORT;
@@ -87,6 +88,7 @@ pub fn write_plant_report(directory: &Path) -> Result<PathBuf, ResultsError> {
 fn headline(summary: &PlantSummary) -> String {
     let stable = match &summary.stability {
         Some(mode) if mode.growth_rate_per_s < 0.0 => "stable",
+        Some(mode) if mode.growth_rate_per_s == 0.0 => "neutral",
         Some(_) => "not stable",
         None => "–",
     };
@@ -340,7 +342,10 @@ fn shapes(case: &PlantCase, edges: &[f64], places: &[Distributions]) -> String {
     }
     let middles: Vec<f64> = grid.diameters().iter().map(|d| 1e3 * d).collect();
     let mut html = String::new();
-    for place in places {
+    let own = measure::places(&case.plant);
+    // Those of attribute classes are in the files alone.
+    let is_whole = |place: &&Distributions| own.iter().any(|(_, name)| *name == place.place);
+    for place in places.iter().filter(is_whole) {
         let any = place.masses.iter().flatten().any(|mass| *mass > 0.0);
         if !any {
             continue;

@@ -1,7 +1,6 @@
 //! A plant's run from its case to its results folder.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -20,8 +19,8 @@ use super::progress::PlantProgress;
 use super::quantities::{Measured, results, verdict};
 use super::summary::{KIND, PlantLedgerSummary, PlantSummary};
 use super::{steady, store};
-use crate::case::plant::PlantCase;
-use crate::results::files::{DISTRIBUTIONS, SERIES};
+use crate::case::plant::{PlantCase, PlantField};
+use crate::results::files::{DISTRIBUTIONS, SERIES, STREAMS};
 use crate::results::sheet::number;
 use crate::results::summary::{CaseName, RunFailure};
 use crate::results::{CASE, CaseIdentity, ResultsError, SUMMARY, Verdict, files, kind, same_case};
@@ -169,7 +168,17 @@ fn occupied(
         }));
     }
     same_case(out, &summary.case.hash, identity(case))?;
-    Ok(summary.is_complete().then_some(summary))
+    if !summary.is_complete() {
+        return Ok(None);
+    }
+    for name in [SERIES, DISTRIBUTIONS, STREAMS] {
+        let path = out.join(name);
+        if !path.is_file() {
+            let fact = "is missing".into();
+            return Err(ResultsError::Spoilt { path, fact }.into());
+        }
+    }
+    Ok(Some(summary))
 }
 
 /// The case of a plant, of which no files are kept.
@@ -187,14 +196,20 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
     let columns = columns(plant);
     let (integrator, tolerance) = (case.method.integrator, case.method.tolerance);
     let saved = match start.resume {
-        true => PlantCheckpoint::read(out)?,
+        true => PlantCheckpoint::recover(out)?,
         false => None,
     };
-    if let Some(saved) = saved {
+    if let Some((saved, told)) = saved {
+        if let Some(told) = told {
+            eprintln!("warning: {told}");
+        }
         same_case(out, &saved.case_hash, identity(case))?;
         let mut run = PlantRun::new(plant, integrator, tolerance)?;
-        let series = Table::resume(out, SERIES, saved.series)?;
-        let distributions = Table::resume(out, DISTRIBUTIONS, saved.distributions)?;
+        // Nothing is cut where another is not as it was.
+        saved.series.check(&out.join(SERIES))?;
+        saved.distributions.check(&out.join(DISTRIBUTIONS))?;
+        let series = Table::resume(out, SERIES, &saved.series)?;
+        let distributions = Table::resume(out, DISTRIBUTIONS, &saved.distributions)?;
         let (rows, next, wall) = (saved.rows, saved.next_distributions, saved.wall);
         let from = saved.from.clone();
         let beds = couple(&mut run, bed::resume(case, out, saved.beds())?)?;
@@ -220,10 +235,14 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
     let mut run = match start.from {
         None => PlantRun::new(plant, integrator, tolerance)?,
         Some(folder) => {
-            let state = PlantCheckpoint::read(folder)?.ok_or_else(|| ResultsError::NoResults {
-                path: folder.to_owned(),
-                fact: "it holds no checkpoint of a plant",
-            })?;
+            let (state, told) =
+                PlantCheckpoint::read(folder)?.ok_or_else(|| ResultsError::NoResults {
+                    path: folder.to_owned(),
+                    fact: "it holds no checkpoint of a plant",
+                })?;
+            if let Some(told) = told {
+                eprintln!("warning: {told}; the run begins from the checkpoint before it");
+            }
             let (found, own) = (state.unknowns().len(), plant.unknowns());
             if found != own {
                 return Err(PlantRunError::OtherPlant {
@@ -264,7 +283,12 @@ impl Driven<'_> {
         start: &PlantStart<'_>,
         progress: &mut PlantProgress,
     ) -> Result<bool, PlantRunError> {
+        if self.beds.is_empty() {
+            let interrupts = start.interrupts.clone();
+            self.run.stop_when(move || interrupts.count() > 0);
+        }
         let mut last = (self.run.time(), Instant::now());
+        progress.show(self.run.time(), "running")?;
         while self.run.time() < self.case.end {
             if start.interrupts.count() > 0 {
                 return Ok(false);
@@ -275,10 +299,17 @@ impl Driven<'_> {
                 true => self.case.end,
                 false => next,
             };
-            match &self.case.method.waveform {
-                None => self.run.advance(next)?,
-                Some(windows) => self.run.advance_by_windows(next, windows)?,
+            // Beds cannot go back to the last row.
+            let row = self.beds.is_empty().then(|| self.run.checkpoint());
+            let advanced = match &self.case.method.waveform {
+                None => self.run.advance(next),
+                Some(windows) => self.run.advance_by_windows(next, windows),
+            };
+            if let (Err(PlantError::Interrupted(_)), Some(row)) = (&advanced, row) {
+                self.run.resume(row);
+                return Ok(false);
             }
+            advanced?;
             self.record()?;
             let due = |every: Option<f64>| {
                 every.is_some_and(|every| self.run.time() - last.0 >= every * (1.0 - 1e-12))
@@ -297,6 +328,18 @@ impl Driven<'_> {
     /// Writes the row of this moment, and distributions where they are due.
     fn record(&mut self) -> Result<(), PlantRunError> {
         let values = row(&self.run, &self.case.plant, &self.columns);
+        // After the time.
+        let mut temperatures = self.columns.iter().zip(&values[1..]);
+        let frozen = temperatures
+            .find(|(column, value)| column.field == PlantField::Temperature && **value <= 0.0);
+        if let Some((column, value)) = frozen {
+            return Err(PlantError::Frozen {
+                place: column.name.clone(),
+                time: self.run.time(),
+                temperature: *value,
+            }
+            .into());
+        }
         let words: Vec<String> = values.into_iter().map(number).collect();
         self.series.append(&words)?;
         self.rows += 1;
@@ -322,12 +365,10 @@ impl Driven<'_> {
             bed.checkpoint()?;
             beds.push(bed.windows());
         }
-        self.series.sync()?;
-        self.distributions.sync()?;
         let written = Written {
             rows: self.rows,
-            series: self.series.bytes(),
-            distributions: self.distributions.bytes(),
+            series: self.series.mark()?,
+            distributions: self.distributions.mark()?,
             // JSON has no infinity.
             next_distributions: self.next_distributions.min(f64::MAX),
             wall: self.wall(),
@@ -335,7 +376,7 @@ impl Driven<'_> {
         };
         let state = self.run.checkpoint();
         let kept = PlantCheckpoint::new(&self.case.hash, &written, self.from.clone(), state);
-        Ok(kept.write(self.out)?)
+        kept.write(self.out)
     }
 
     /// Beds end with their plant.
@@ -381,8 +422,6 @@ impl Driven<'_> {
         store::write(self.out, self.case, &self.columns, &series)?;
         summary.wall_time_s = self.wall();
         summary.replace(self.out)?;
-        // What draughts of files an earlier stretch left is of no use any more.
-        let _ = fs::remove_file(self.out.join("checkpoint/plant.json.new"));
         Ok(summary)
     }
 

@@ -207,9 +207,10 @@ pub fn plant_closing(summary: &PlantSummary) -> String {
         let _ = writeln!(text, "  steady state             {why}");
     }
     if let Some(stability) = &summary.stability {
-        let word = match stability.growth_rate_per_s < 0.0 {
-            true => "stable",
-            false => "not stable",
+        let word = match stability.growth_rate_per_s {
+            rate if rate < 0.0 => "stable",
+            0.0 => "neutral, what is there stays",
+            _ => "not stable",
         };
         let _ = writeln!(
             text,

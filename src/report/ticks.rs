@@ -40,7 +40,10 @@ pub(super) fn digits(range: Range, step: f64) -> usize {
     let largest = range.low.abs().max(range.high.abs());
     let places = (largest / step).log10().floor();
     if places.is_finite() {
-        (places as usize + 2).clamp(2, 12)
+        // A step of 2.5 has a digit more than one of 1, 2 or 5.
+        let mantissa = step / 10f64.powf(step.log10().floor());
+        let more = usize::from((mantissa - 2.5).abs() < 1e-6);
+        (places as usize + 2 + more).clamp(2, 12)
     } else {
         5
     }
@@ -77,5 +80,15 @@ mod tests {
         for tick in ticks(narrow, 5) {
             assert!((17.93..=18.07).contains(&tick), "{tick}");
         }
+    }
+
+    #[test]
+    fn ticks_of_a_quarter_are_told_apart() {
+        let range = Range {
+            low: 1.4,
+            high: 2.3,
+        };
+        assert_eq!(digits(range, 0.25), 3);
+        assert_eq!(digits(range, 0.2), 2);
     }
 }

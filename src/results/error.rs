@@ -87,7 +87,9 @@ pub enum ResultsError {
     },
     /// A file that a run left at its end is no longer there, or another.
     #[error("the run is complete, but {} {fact}", path.display())]
-    #[diagnostic(help("put the file back as it was, or run the case again into a folder of its own; nothing was changed"))]
+    #[diagnostic(help(
+        "put the file back as it was, or run the case again into a folder of its own; nothing was changed"
+    ))]
     Spoilt {
         /// The file.
         path: PathBuf,

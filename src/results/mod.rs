@@ -11,6 +11,7 @@ pub(crate) mod files;
 // Only HDF5 holds descriptions.
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 pub mod inertial_number;
+pub(crate) mod marked;
 mod moment;
 mod probe;
 pub mod quantities;

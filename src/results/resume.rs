@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::coordinator::sum_of_file;
@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use super::files::{DRAFT, gas_file, particle_file, probe_file};
 use super::inertial_number::InertialNumberStatistics;
+use super::marked::FileMark;
 use super::moment::SnapshotMoment;
 use super::quantities::Captured;
-use super::series::SeriesMark;
+use super::read::{Series, collection};
 use super::steps::StepSummary;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::warnings::Warnings;
 use super::{CaseIdentity, same_case};
-use super::read::{Series, collection};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 use crate::case::model::Case;
 
@@ -28,6 +28,9 @@ const COUNTERS: &str = "recorder.json";
 /// Raised with every change of what is counted.
 const FORMAT: u32 = 2;
 
+/// The first bytes of an HDF5 file.
+const HDF5_SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
+
 /// Where the recorder stands: with the files of the results folder, cut back to it, all that it needs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Counters {
@@ -36,7 +39,7 @@ pub(super) struct Counters {
     pub format: u32,
     /// How far `series.csv` was.
     #[serde(default)]
-    pub series: SeriesMark,
+    pub series: FileMark,
     /// Hash of the case.
     pub case_hash: String,
     /// The run that this one continued from.
@@ -102,9 +105,8 @@ fn snapshot_files(results: &Path, number: usize) -> Vec<PathBuf> {
 /// Flushes the files of the snapshots that came since the last checkpoint to the disk, and takes their sums.
 pub(super) fn seal(results: &Path, counters: &mut Counters) -> Result<(), ResultsError> {
     for number in counters.sums.len()..counters.snapshots.len() {
-        let sum = |path: PathBuf| {
-            sum_of_file(&path, true).map_err(ResultsError::file("flush", &path))
-        };
+        let sum =
+            |path: PathBuf| sum_of_file(&path, true).map_err(ResultsError::file("flush", &path));
         let paths = snapshot_files(results, number);
         let sums = paths.into_iter().map(sum).collect::<Result<_, _>>()?;
         counters.sums.push(sums);
@@ -213,10 +215,10 @@ pub(super) fn restore(
             }
         }
     }
-    counters.series.check(results)?;
+    counters.series.check(&results.join(SERIES))?;
     check_snapshots(results, &counters.sums)?;
     let is_closed = is_as_left(results);
-    counters.series.cut(results)?;
+    counters.series.cut(&results.join(SERIES))?;
     for folder in files::SNAPSHOTS {
         let folder = results.join(folder);
         if folder.is_dir() {
@@ -256,8 +258,7 @@ pub fn as_finished(results: &Path, summary: &Summary) -> Result<(), ResultsError
     };
     let (series, store) = (results.join(SERIES), results.join(STORE));
     for path in [&series, &store] {
-        // Without HDF5 there is no store.
-        let due = path == &series || summary.results_sum.is_some();
+        let due = path == &series || cfg!(feature = "hdf5");
         if due && !path.is_file() {
             return Err(spoilt(path.clone(), "is missing"));
         }
@@ -268,9 +269,12 @@ pub fn as_finished(results: &Path, summary: &Summary) -> Result<(), ResultsError
     if last.is_none_or(|last| (last - end).abs() > 1e-9 * end.abs()) {
         return Err(spoilt(series, "does not reach to its end"));
     }
-    let own = sum_of_store(results);
-    if own.is_some() && summary.results_sum.is_some() && own != summary.results_sum {
-        return Err(spoilt(store, "has another content than the run left in it"));
+    if cfg!(feature = "hdf5") {
+        let mut start = [0; HDF5_SIGNATURE.len()];
+        let read = File::open(&store).and_then(|mut file| file.read_exact(&mut start));
+        if read.is_err() || start != *HDF5_SIGNATURE {
+            return Err(spoilt(store, "is not an HDF5 file"));
+        }
     }
     for name in [files::GAS, files::PARTICLES] {
         for (_, file) in collection(results, name)? {

@@ -1,20 +1,16 @@
 //! The time series: columns that stay the same over a run, and `series.csv`.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use calcine_coupler::observer::CommittedState;
 use calcine_coupler::step_error::StepError;
 use calcine_coupler::time::Window;
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
+use super::marked::{FileMark, MarkedFile};
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
 use super::{ResultsError, SERIES, inertial_number, sheet};
 use crate::case::model::{Case, MotionKind, MotionSpec, Statistic};
-use crate::hex::hex;
 
 /// Up to so many particles each has a column of its own; beyond, the series holds statistics.
 pub(super) const TRACKED_PARTICLES: usize = 1000;
@@ -260,49 +256,8 @@ pub(super) fn row(
     Row { values, particles }
 }
 
-/// How far `series.csv` was when a checkpoint was written.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct SeriesMark {
-    /// Its length in bytes.
-    pub bytes: u64,
-    /// SHA-256 of these bytes in hexadecimal digits.
-    pub sha256: String,
-}
-
-impl SeriesMark {
-    /// Refuses a file that does not begin with what it was.
-    pub fn check(&self, directory: &Path) -> Result<(), ResultsError> {
-        let path = directory.join(SERIES);
-        let text = fs::read(&path).map_err(ResultsError::file("read", &path))?;
-        let begin = usize::try_from(self.bytes)
-            .ok()
-            .and_then(|bytes| text.get(..bytes))
-            .ok_or_else(|| {
-                let fact = format!("it has {} bytes in place of {}", text.len(), self.bytes);
-                ResultsError::behind(&path, fact)
-            })?;
-        match hex(Sha256::new_with_prefix(begin).finalize()) == self.sha256 {
-            true => Ok(()),
-            false => Err(ResultsError::behind(&path, "what was in it is changed")),
-        }
-    }
-
-    /// Cuts a file that has gone on back to what it was.
-    pub fn cut(&self, directory: &Path) -> Result<(), ResultsError> {
-        let path = directory.join(SERIES);
-        let file = OpenOptions::new().write(true).open(&path);
-        file.and_then(|file| file.set_len(self.bytes))
-            .map_err(ResultsError::file("cut", &path))
-    }
-}
-
 /// The file `series.csv`.
-pub(super) struct Table {
-    path: PathBuf,
-    file: BufWriter<File>,
-    bytes: u64,
-    hasher: Sha256,
-}
+pub(super) struct Table(MarkedFile);
 
 impl Table {
     /// Begins the file with its head.
@@ -311,17 +266,10 @@ impl Table {
         columns: &[Column],
         tracked: &[u64],
     ) -> Result<Self, ResultsError> {
-        let path = directory.join(SERIES);
-        let file = File::create(&path).map_err(ResultsError::file("create", &path))?;
-        let mut table = Self {
-            path,
-            file: BufWriter::new(file),
-            bytes: 0,
-            hasher: Sha256::new(),
-        };
-        let head = head(&table.path, columns, tracked)?;
-        table.write(&head)?;
-        Ok(table)
+        let mut file = MarkedFile::create(directory.join(SERIES))?;
+        let head = head(file.path(), columns, tracked)?;
+        file.write(&head)?;
+        Ok(Self(file))
     }
 
     /// Goes on with a file whose head is the same.
@@ -338,50 +286,25 @@ impl Table {
                 "its columns are not this case's",
             ));
         }
-        let file = OpenOptions::new()
-            .append(true)
-            .open(&path)
-            .map_err(ResultsError::file("open", &path))?;
-        Ok(Self {
-            path,
-            file: BufWriter::new(file),
-            bytes: text.len() as u64,
-            hasher: Sha256::new_with_prefix(text),
-        })
+        MarkedFile::resume(path, &text).map(Self)
     }
 
     /// Flushes the file to the disk; gives how far it is.
-    pub fn mark(&mut self) -> Result<SeriesMark, ResultsError> {
-        self.flush()?;
-        let file = self.file.get_ref();
-        file.sync_data()
-            .map_err(ResultsError::file("flush", &self.path))?;
-        Ok(SeriesMark {
-            bytes: self.bytes,
-            sha256: hex(self.hasher.clone().finalize()),
-        })
+    pub fn mark(&mut self) -> Result<FileMark, ResultsError> {
+        self.0.mark()
     }
 
     /// Appends a row; numbers are written so that they read back to the same bits.
     pub fn append(&mut self, row: &Row) -> Result<(), ResultsError> {
         let values = row.values.iter().chain(&row.particles);
         let words: Vec<String> = values.map(|&value| sheet::number(value)).collect();
-        self.write(&sheet::line(&self.path, &words)?)
+        let line = sheet::line(self.0.path(), &words)?;
+        self.0.write(&line)
     }
 
     /// Hands what is buffered to the operating system.
     pub fn flush(&mut self) -> Result<(), ResultsError> {
-        self.file
-            .flush()
-            .map_err(ResultsError::file("write", &self.path))
-    }
-
-    fn write(&mut self, bytes: &[u8]) -> Result<(), ResultsError> {
-        self.bytes += bytes.len() as u64;
-        self.hasher.update(bytes);
-        self.file
-            .write_all(bytes)
-            .map_err(ResultsError::file("write", &self.path))
+        self.0.flush()
     }
 }
 

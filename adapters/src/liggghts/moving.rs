@@ -439,7 +439,7 @@ fn moving_mesh(text: &mut String, index: usize, motion: &WallMotion) {
 pub fn boundary(periodicity: &Periodicity, lost: LostParticles) -> String {
     let side = match lost {
         LostParticles::End => "f",
-        LostParticles::TakeOut => "m",
+        LostParticles::TakeOut | LostParticles::Through => "m",
     };
     let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { side };
     periodicity.axes.each_ref().map(word).join(" ")

@@ -11,9 +11,17 @@ use super::error::CheckpointError;
 
 /// Where checkpoints are: `checkpoint` inside the results folder, and the one before it as `checkpoint.before`; complete at any
 /// moment.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckpointPaths {
     results: PathBuf,
+    /// Name of the file that every checkpoint has.
+    own: &'static str,
+}
+
+impl Default for CheckpointPaths {
+    fn default() -> Self {
+        Self::new(Path::new(""))
+    }
 }
 
 /// A checkpoint that a run may go on from.
@@ -28,8 +36,14 @@ pub struct WholeCheckpoint {
 impl CheckpointPaths {
     /// The paths inside a results folder.
     pub fn new(results: &Path) -> Self {
+        Self::of(results, OWN)
+    }
+
+    /// The same of checkpoints that have another file in place of the coordinator's state.
+    pub fn of(results: &Path, own: &'static str) -> Self {
         Self {
             results: results.to_owned(),
+            own,
         }
     }
 
@@ -49,14 +63,14 @@ impl CheckpointPaths {
     }
 
     /// The one being written.
-    pub(super) fn fresh(&self) -> PathBuf {
+    pub fn fresh(&self) -> PathBuf {
         self.results.join("checkpoint.part")
     }
 
     /// True where a run left a checkpoint, whole or not.
     pub fn exists(&self) -> bool {
         let left = [self.committed(), self.before()];
-        left.iter().any(|path| path.join(OWN).is_file())
+        left.iter().any(|path| path.join(self.own).is_file())
     }
 
     /// The newest checkpoint whose files are as they were written; `None` where there is no checkpoint at all.
@@ -66,7 +80,7 @@ impl CheckpointPaths {
         }
         let mut newest = None;
         for path in self.candidates().filter(|path| path.is_dir()) {
-            let Some(what) = damage(&path) else {
+            let Some(what) = damage(&path, self.own) else {
                 return Ok(Some(WholeCheckpoint {
                     path,
                     damage: newest,
@@ -106,14 +120,14 @@ impl CheckpointPaths {
     }
 
     /// Makes the fresh checkpoint the committed one and that the one before; at no moment is there none.
-    pub(super) fn publish(&self) -> Result<(), CheckpointError> {
+    pub fn publish(&self) -> Result<(), CheckpointError> {
         let (fresh, committed, before) = (self.fresh(), self.committed(), self.before());
         let failed = |doing, cause: io::Error| CheckpointError::Io {
             path: committed.clone(),
             doing,
             cause,
         };
-        seal(&fresh).map_err(|cause| failed("flushing its files", cause))?;
+        seal(&fresh, self.own).map_err(|cause| failed("flushing its files", cause))?;
         sync(&fresh).map_err(|cause| failed("flushing it", cause))?;
         if committed.exists() {
             exchange(&fresh, &committed)
@@ -283,7 +297,7 @@ mod tests {
         folder.publish(1);
         folder.publish(2);
         folder.write(3);
-        seal(&paths.fresh()).unwrap();
+        seal(&paths.fresh(), OWN).unwrap();
         assert_eq!(paths.recover().unwrap(), None);
         // After it: the one before the last is still the fresh one.
         exchange(&paths.fresh(), &paths.committed()).unwrap();

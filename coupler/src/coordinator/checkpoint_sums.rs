@@ -9,13 +9,14 @@ use sha2::{Digest, Sha256};
 
 /// Name of the list, in the format of `sha256sum`.
 pub(super) const SUMS: &str = "SHA256SUMS";
-/// The coordinator's own state, the last of the list: a list that was cut short lacks it.
+/// The coordinator's own state.
 pub(super) const OWN: &str = "coordinator.state";
 
-/// Flushes all files of a checkpoint to disk and leaves the list of their checksums.
-pub(super) fn seal(folder: &Path) -> io::Result<()> {
+/// Flushes all files of a checkpoint to disk and leaves the list of their checksums, with a file of its own last: a list
+/// that was cut short lacks it.
+pub(super) fn seal(folder: &Path, own: &str) -> io::Result<()> {
     let mut list = String::new();
-    for path in files(folder)? {
+    for path in files(folder, own)? {
         let sum = sum(&folder.join(&path), true)?;
         let _ = writeln!(list, "{sum}  {}", path.display());
     }
@@ -25,7 +26,7 @@ pub(super) fn seal(folder: &Path) -> io::Result<()> {
 }
 
 /// What is wrong with a checkpoint; `None` where every file is as it was written.
-pub(super) fn damage(folder: &Path) -> Option<String> {
+pub(super) fn damage(folder: &Path, own: &str) -> Option<String> {
     let list = match fs::read_to_string(folder.join(SUMS)) {
         Ok(list) => list,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -35,7 +36,7 @@ pub(super) fn damage(folder: &Path) -> Option<String> {
         }
         Err(error) => return Some(format!("{SUMS} cannot be read: {error}")),
     };
-    if !list.ends_with(&format!("  {OWN}\n")) {
+    if !list.ends_with(&format!("  {own}\n")) {
         return Some(format!("{SUMS} is cut short"));
     }
     for line in list.lines() {
@@ -51,8 +52,8 @@ pub(super) fn damage(folder: &Path) -> Option<String> {
     None
 }
 
-/// The files of a folder and of those in it, relative to it, in a fixed order with the coordinator's own last.
-fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+/// The files of a folder and of those in it, relative to it, in a fixed order with `own` last.
+fn files(folder: &Path, own: &str) -> io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut folders = vec![PathBuf::new()];
     while let Some(inner) = folders.pop() {
@@ -65,7 +66,7 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
         }
     }
     found.retain(|path| path != Path::new(SUMS));
-    found.sort_by_key(|path| (path == Path::new(OWN), path.clone()));
+    found.sort_by_key(|path| (path == Path::new(own), path.clone()));
     Ok(found)
 }
 

@@ -120,11 +120,16 @@ impl CoupledRun {
 
     /// Takes particles out that left the mesh, where the case wants that, books them and tells of them.
     pub(super) fn take_out_lost(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {
-        if self.plan.lost == LostParticles::End {
+        let ends = self.plan.lost != LostParticles::TakeOut;
+        // Without outlets the particles' solver ends the run, or else the next mapping.
+        if ends && !self.plan.feeds_and_outlets.lets_out() {
             return Ok(());
         }
         let fields = self.parts.particles.fields();
         let rows = self.bed.outside(fields.position);
+        if let Some(&row) = rows.first().filter(|_| ends) {
+            return Err(self.lost(row));
+        }
         let speed = |row: usize| fields.velocity[row].norm();
         let Some(fastest) = rows
             .iter()

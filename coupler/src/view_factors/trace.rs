@@ -27,8 +27,16 @@ impl<'a> SphereGrid<'a> {
         let most = 4.0 * centres.len() as f64 + 64.0;
         let extent = high - low;
         // Wide beds of few spheres get larger cells.
-        let width = largest.max((extent.x * extent.y * extent.z / most).cbrt());
-        let count = [0, 1, 2].map(|axis| ((extent[axis] / width) as usize).max(1));
+        let mut width = largest
+            .max((extent.x * extent.y * extent.z / most).cbrt())
+            .max(1e-9 * extent.max());
+        let counts = |width: f64| [0, 1, 2].map(|axis| ((extent[axis] / width) as usize).max(1));
+        let cells = |count: [usize; 3]| count.iter().map(|&one| one as f64).product::<f64>();
+        // Flat beds have a layer of cells, whatever their volume.
+        while cells(counts(width)) > 2.0 * most {
+            width *= 1.25;
+        }
+        let count = counts(width);
         let size = Vec3::from([0, 1, 2].map(|axis| extent[axis] / count[axis] as f64));
         let mut grid = Self {
             radii,

@@ -58,6 +58,7 @@ pub struct PlantRun<'a> {
     pub(super) window: f64,
     /// Beds that are computed elsewhere, in the order of their units.
     pub(super) beds: Vec<Box<dyn CoupledBed>>,
+    stops: Option<Box<dyn Fn() -> bool + Send>>,
 }
 
 impl<'a> PlantRun<'a> {
@@ -105,6 +106,7 @@ impl<'a> PlantRun<'a> {
             closures: vec![0.0; plant.tears().len()],
             window: 0.0,
             beds: Vec::new(),
+            stops: None,
         };
         run.settle()?;
         Ok(run)
@@ -183,8 +185,16 @@ impl<'a> PlantRun<'a> {
         })
     }
 
+    /// Ends what is followed with [`PlantError::Interrupted`] before the step in which this says so.
+    pub fn stop_when(&mut self, stops: impl Fn() -> bool + Send + 'static) {
+        self.stops = Some(Box::new(stops));
+    }
+
     /// One step; what it took in s.
     fn step_towards(&mut self, end: f64, fresh: bool, forced: bool) -> Result<f64, PlantError> {
+        if self.stops.as_ref().is_some_and(|stops| stops()) {
+            return Err(PlantError::Interrupted(self.time));
+        }
         let at = Moment {
             time: self.time,
             end,

@@ -29,7 +29,7 @@ pub struct WaveformSettings {
     pub change: f64,
     /// Windows of at most so many iterations are followed by a longer one.
     pub few: usize,
-    /// Windows of more iterations are followed by a shorter one.
+    /// Windows of more iterations are followed by a shorter one, which is not shorter than the first for that.
     pub many: usize,
     /// Most iterations of a window.
     pub most: usize,

@@ -54,7 +54,8 @@ impl PlantRun<'_> {
                     } else if iterations <= settings.few {
                         (span * settings.change).min(settings.longest)
                     } else if iterations > settings.many {
-                        span / settings.change
+                        // Shorter ones may need as many: those that settle are not shortened below the first.
+                        (span / settings.change).max(settings.first.min(span))
                     } else {
                         span
                     };
@@ -93,10 +94,13 @@ impl PlantRun<'_> {
         for acceleration in ways {
             match self.relax(span, end, settings, acceleration) {
                 Err(error) => {
-                    *why = Some(error);
                     self.now.work.given = None;
                     self.now.work.streams.copy_from_slice(&streams);
                     self.restore(&start);
+                    if matches!(error, PlantError::Interrupted(_)) {
+                        return Err(error);
+                    }
+                    *why = Some(error);
                 }
                 done => return done,
             }
@@ -122,7 +126,12 @@ impl PlantRun<'_> {
         let size = wave.values[0].len();
         let mut iteration = NodeIteration::new();
         let mut least = f64::INFINITY;
-        for count in 1..=settings.most {
+        // What settles does so soon, and where secants do not, Anderson's method is tried.
+        let most = match acceleration {
+            TearAcceleration::Anderson => settings.most,
+            TearAcceleration::Wegstein(_) => settings.most.min(2 * settings.many),
+        };
+        for count in 1..=most {
             self.restore(&start);
             self.now.work.given = Some(wave.clone());
             let mut x = Vec::with_capacity(NODES * size);

@@ -16,19 +16,25 @@ pub(super) fn sheet(text: &str) -> Result<Sheet, Fault> {
         let blank = record.len() == 1 && record[0].is_empty();
         match &mut sheet {
             _ if blank => {}
-            None => sheet = Some(head(&record)),
+            None => sheet = Some(head(&record)?),
             Some(sheet) => row(sheet, &record, line_of(&record, text))?,
         }
     }
     Ok(sheet.unwrap_or_default())
 }
 
-fn head(record: &StringRecord) -> Sheet {
+/// What a file without names of columns lacks.
+const HEADING: &str = "its first line names no column that is read; write a line such as `x,y,z,diameter` above the numbers";
+
+fn head(record: &StringRecord) -> Result<Sheet, Fault> {
+    if record.iter().all(|word| word.parse::<f64>().is_ok()) {
+        return Err((None, HEADING.into()));
+    }
     let column = |name: &str| (name.to_lowercase(), Vec::new());
-    Sheet {
+    Ok(Sheet {
         columns: record.iter().map(column).collect(),
         lines: Vec::new(),
-    }
+    })
 }
 
 /// The line of a record. The reader's position is before the empty lines that it skips.
@@ -44,6 +50,12 @@ fn line_of(record: &StringRecord, text: &str) -> usize {
 
 fn row(sheet: &mut Sheet, record: &StringRecord, line: usize) -> Result<(), Fault> {
     let (found, needed) = (record.len(), sheet.columns.len());
+    if sheet.lines.is_empty()
+        && found != needed
+        && sheet.columns.iter().all(|(name, _)| !is_read(name))
+    {
+        return Err((None, HEADING.into()));
+    }
     if found != needed {
         let what = format!(
             "there are {found} values, but {needed} columns; separate them by commas, with a point in decimals"

@@ -6,6 +6,7 @@ mod legacy;
 mod sheet;
 mod xml;
 
+use calcine_coupler::regular_file;
 use std::path::Path;
 
 pub(super) use sheet::{Choice, Entry, Heaviness};
@@ -47,7 +48,7 @@ fn open(path: &Path, choice: Choice) -> Result<Sheet, PlaceError> {
             what: "it is a folder; name a file of particles in it".into(),
         });
     }
-    let bytes = std::fs::read(path).map_err(|cause| PlaceError::Io {
+    let bytes = regular_file::read(path).map_err(|cause| PlaceError::Io {
         path: path.to_owned(),
         cause,
     })?;

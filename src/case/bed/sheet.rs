@@ -178,6 +178,9 @@ const COMPUTED: [&str; 2] = ["c_", "f_"];
 
 const DIAMETER: [&str; 1] = ["diameter"];
 
+/// Smallest diameter of a particle in m.
+const SMALLEST: f64 = 1e-9;
+
 const RADIUS: [&str; 1] = ["radius"];
 
 /// Share by which a diameter and twice a radius may differ where each is rounded.
@@ -383,7 +386,12 @@ impl Sheet {
             }
             let diameter = own.map(|(list, factor)| {
                 let what = if factor == 1.0 { "diameter" } else { "radius" };
-                positive(what, index, list[index]).map(|value| factor * value)
+                let diameter = factor * positive(what, index, list[index])?;
+                if diameter < SMALLEST {
+                    let what = format!("the {what} is {} m, below a nanometre", list[index]);
+                    return Err((Some(self.row(index)), what));
+                }
+                Ok(diameter)
             });
             let stated = |what: &str, list: Option<&[f64]>| {
                 list.map(|list| positive(what, index, list[index]))

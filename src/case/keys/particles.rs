@@ -5,24 +5,24 @@ use super::zone::{BOX, CYLINDER, ZONE};
 
 #[rustfmt::skip]
 const DIAMETER_NORMAL: &[Key] = &[
-    key("mean", Number(D::LENGTH, Positive), Required, "Mean before it is cut off; between `min` and `max`.", "\"4 mm\""),
+    key("mean", Number(D::LENGTH, AtLeast(1e-9)), Required, "Mean before it is cut off; between `min` and `max`.", "\"4 mm\""),
     key("deviation", Number(D::LENGTH, Positive), Required, "Standard deviation before it is cut off.", "\"0.4 mm\""),
-    key("min", Number(D::LENGTH, Positive), Required, "Smallest diameter.", "\"3 mm\""),
-    key("max", Number(D::LENGTH, Positive), Required, "Largest diameter.", "\"5 mm\""),
+    key("min", Number(D::LENGTH, AtLeast(1e-9)), Required, "Smallest diameter.", "\"3 mm\""),
+    key("max", Number(D::LENGTH, AtLeast(1e-9)), Required, "Largest diameter.", "\"5 mm\""),
 ];
 
 #[rustfmt::skip]
 const DIAMETER_LOG_NORMAL: &[Key] = &[
-    key("median", Number(D::LENGTH, Positive), Required, "Median before it is cut off; between `min` and `max`.", "\"4 mm\""),
+    key("median", Number(D::LENGTH, AtLeast(1e-9)), Required, "Median before it is cut off; between `min` and `max`.", "\"4 mm\""),
     key("deviation", Number(D::NONE, Positive), Required, "Geometric standard deviation, above 1.", "1.3"),
-    key("min", Number(D::LENGTH, Positive), Required, "Smallest diameter.", "\"2 mm\""),
-    key("max", Number(D::LENGTH, Positive), Required, "Largest diameter.", "\"8 mm\""),
+    key("min", Number(D::LENGTH, AtLeast(1e-9)), Required, "Smallest diameter.", "\"2 mm\""),
+    key("max", Number(D::LENGTH, AtLeast(1e-9)), Required, "Largest diameter.", "\"8 mm\""),
 ];
 
 #[rustfmt::skip]
 const DIAMETER_UNIFORM: &[Key] = &[
-    key("min", Number(D::LENGTH, Positive), Required, "Smallest diameter.", "\"3 mm\""),
-    key("max", Number(D::LENGTH, Positive), Required, "Largest diameter.", "\"5 mm\""),
+    key("min", Number(D::LENGTH, AtLeast(1e-9)), Required, "Smallest diameter.", "\"3 mm\""),
+    key("max", Number(D::LENGTH, AtLeast(1e-9)), Required, "Largest diameter.", "\"5 mm\""),
 ];
 
 #[rustfmt::skip]
@@ -68,7 +68,7 @@ const PLACE: &[Key] = &[
 pub(super) const PARTICLES: &[Key] = &[
     key("name", Text, Required, "Name; no two alike.", "\"beads\""),
     key("material", Text, Required, "One of `materials`.", "\"glass\""),
-    key("diameter", Either(&Number(D::LENGTH, Positive), &Table(DIAMETER)), Required, "Diameter, or a distribution: exactly one of `normal`, `log_normal`, `uniform` and `table`. Where a file of particles states diameters, those count.", "\"10 mm\""),
+    key("diameter", Either(&Number(D::LENGTH, AtLeast(1e-9)), &Table(DIAMETER)), Required, "Diameter, 1 nm at least, or a distribution: exactly one of `normal`, `log_normal`, `uniform` and `table`. Where a file of particles states diameters, those count.", "\"10 mm\""),
     key("motion", Choice(words::<MotionSpec>), Required, "How the particles move: not at all; by gravity, contacts and the force of the gas; or as parcels that stand for many, by gravity, the stress of the solid and the force of the gas. What moves needs a section `[motion]`.", "\"frozen\""),
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at the start; of free particles.", "\"0 0 -0.1 m/s\""),
     key("temperature", Number(D::TEMPERATURE, Positive), OneOf, "Temperature at the start. Either this or `prescribed_temperature`.", "\"300 K\""),

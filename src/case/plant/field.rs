@@ -5,19 +5,29 @@ use calcine_flowsheet::distribution::{mean_diameter, quantile};
 
 use super::words::PlantField;
 
-/// A field of a state in SI units; NaN where there is nothing to measure.
-pub fn field(
-    layout: &StreamLayout,
-    state: &[f64],
-    field: PlantField,
-    compound: Option<usize>,
-) -> f64 {
+/// Most attribute classes that series have columns of.
+pub const MOST_CLASSES: usize = 40;
+
+/// Name of an attribute class by its place among all: `colour 1`; classes count from 1.
+pub fn class_name(layout: &StreamLayout, index: usize) -> String {
+    let (attribute, class) = layout.attribute_classes()[index];
+    format!("{} {}", layout.attributes()[attribute].name, class + 1)
+}
+
+/// A field of a state in SI units; NaN where there is nothing to measure. `part` is the compound, or the attribute class by its
+/// place among all.
+pub fn field(layout: &StreamLayout, state: &[f64], field: PlantField, part: Option<usize>) -> f64 {
     let of_sizes = |measure: &dyn Fn(&[f64]) -> Option<f64>| measure(&layout.by_size(state));
     match field {
         PlantField::Output => f64::NAN,
         PlantField::Mass => layout.mass_flow(state),
         PlantField::Solids => layout.solid_flow(state),
-        PlantField::Compound => compound.map_or(f64::NAN, |k| layout.compound_flow(state, k)),
+        PlantField::Compound => part.map_or(f64::NAN, |k| layout.compound_flow(state, k)),
+        PlantField::Class => of_class(layout, state, part).iter().sum(),
+        PlantField::ClassMeanDiameter => {
+            let sizes = of_class(layout, state, part);
+            mean_diameter(layout.grid(), &sizes).unwrap_or(f64::NAN)
+        }
         PlantField::Moisture => {
             let liquids = 0..layout.compounds().len();
             let liquids: f64 = liquids.map(|k| state[layout.liquid(k)]).sum();
@@ -37,6 +47,14 @@ pub fn field(
             of_sizes(&|sizes| quantile(layout.grid(), sizes, share)).unwrap_or(f64::NAN)
         }
     }
+}
+
+/// Mass by size class of the particles of an attribute class.
+fn of_class(layout: &StreamLayout, state: &[f64], index: Option<usize>) -> Vec<f64> {
+    let wanted = index.and_then(|index| layout.attribute_classes().get(index).copied());
+    layout.by_size_where(state, |own| {
+        wanted.is_some_and(|(attribute, class)| own[attribute] == class)
+    })
 }
 
 #[cfg(test)]

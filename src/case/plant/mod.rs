@@ -15,7 +15,7 @@ mod units;
 pub(in crate::case) mod words;
 
 pub use bed::{PlantBedFeed, PlantBedSpec};
-pub use field::field;
+pub use field::{MOST_CLASSES, class_name, field};
 pub use model::{
     ContinuationSpec, PlantCase, PlantMeasure, PlantMeasuredValues, PlantMethod, PlantPlace,
     PlantQuantity, PlantTunedKey, PlantTuningSpec, SteadySpec,

@@ -2,10 +2,11 @@
 
 use calcine_flowsheet::Plant;
 
+use super::field::{MOST_CLASSES, class_name};
 use super::model::{ContinuationSpec, PlantMeasure, PlantPlace, PlantQuantity, SteadySpec};
 use super::words::{LimitField, OverTime, PlantField, SteadyField};
 use crate::case::table::TableReader;
-use crate::case::tolerance::band;
+use crate::case::tolerance::{band, band_about};
 use crate::case::units::Dimension;
 
 /// What a measure may ask for.
@@ -39,7 +40,7 @@ pub(super) fn quantities(root: &TableReader<'_>, known: &Measurable<'_>) -> Vec<
         };
         let expect = expected.and_then(|reader| {
             let value = reader.number_as("value", dimension);
-            let within = band(&reader, "within", dimension);
+            let within = band_about(&reader, value, dimension);
             reader.finish();
             value.zip(within)
         });
@@ -190,22 +191,44 @@ pub(super) fn field(
     let field = reader.choice::<PlantField>("field");
     let compound = reader.text("of");
     let (field, plant) = (field?, plant?);
-    let compounds = plant.layout().compounds();
-    let names: Vec<&str> = compounds.iter().map(|one| one.name.as_str()).collect();
+    let layout = plant.layout();
+    let compounds = layout.compounds().iter().map(|one| one.name.clone());
+    let classes = layout.attribute_classes().len();
+    let of_class = matches!(field, PlantField::Class | PlantField::ClassMeanDiameter);
+    if of_class && classes > MOST_CLASSES {
+        let rule = format!("is of attribute classes, of which the plant has {classes}");
+        let help =
+            format!("measure a plant with up to {MOST_CLASSES}: series have no columns of more");
+        reader.fail("field", rule, help);
+        return None;
+    }
+    let (what, names): (_, Vec<String>) = match of_class {
+        true => (
+            "attribute class",
+            (0..classes)
+                .map(|index| class_name(layout, index))
+                .collect(),
+        ),
+        false => ("compound", compounds.collect()),
+    };
     let found = compound.and_then(|name| names.iter().position(|own| *own == name));
-    match (field, compound) {
-        (PlantField::Compound, None) => {
+    match (field == PlantField::Compound || of_class, compound) {
+        (true, None) => {
             reader.missing("of");
             return None;
         }
-        (PlantField::Compound, Some(name)) if found.is_none() => {
-            let help = format!("the compounds are {}", names.join(", "));
-            reader.fail("of", format!("is \"{name}\", which is no compound"), help);
+        (true, Some(name)) if found.is_none() => {
+            let help = match names[..] {
+                [] => "the plant has no [[attributes]]".into(),
+                _ if of_class => format!("the attribute classes are {}", names.join(", ")),
+                _ => format!("the compounds are {}", names.join(", ")),
+            };
+            reader.fail("of", format!("is \"{name}\", which is no {what}"), help);
             return None;
         }
-        (PlantField::Compound, Some(_)) | (_, None) => {}
+        (true, Some(_)) | (_, None) => {}
         (_, Some(_)) => {
-            let help = "remove it, or measure the field \"compound\"";
+            let help = "remove it, or measure the field \"compound\" or \"class\"";
             reader.fail("of", "does not go with this field", help);
         }
     }
@@ -219,10 +242,12 @@ pub(super) fn dimension_of(field: PlantField, of: PlantPlace) -> Dimension {
         PlantPlace::Unit(_) => Dimension::MASS,
     };
     match field {
-        PlantField::Mass | PlantField::Solids | PlantField::Compound => amount,
+        PlantField::Mass | PlantField::Solids | PlantField::Compound | PlantField::Class => amount,
         PlantField::Moisture | PlantField::Output => Dimension::NONE,
         PlantField::Temperature => Dimension::TEMPERATURE,
-        PlantField::MeanDiameter | PlantField::Quantile(_) => Dimension::LENGTH,
+        PlantField::MeanDiameter | PlantField::ClassMeanDiameter | PlantField::Quantile(_) => {
+            Dimension::LENGTH
+        }
     }
 }
 

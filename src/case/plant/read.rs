@@ -17,8 +17,12 @@ use crate::case::keys::{KINDS, kind_named};
 use crate::case::parse::{FORMAT, parse_as, text_of};
 use crate::case::problem::CaseErrors;
 use crate::case::table::TableReader;
+use crate::case::units::short;
 use crate::hex::hex;
 use crate::laws::LawCatalogue;
+
+/// Most rows that a series may have.
+const MOST_ROWS: f64 = 1e7;
 
 /// Reads and checks the case of a plant with `--set key=value` applied; all its errors at once.
 pub fn read_plant(path: &Path, set: &[String]) -> Result<PlantCase, CaseErrors> {
@@ -185,6 +189,18 @@ pub(in crate::case) fn plant(
         table.finish();
         (every, distributions)
     });
+    if let (Some(Some(end)), Some((Some(every), _))) = (time.as_ref().map(|one| one.0), &output)
+        && end / every > MOST_ROWS
+    {
+        let rule = format!("makes {} rows of the series", short(end / every));
+        if let Some(table) = root.table("output") {
+            table.fail(
+                "every",
+                rule,
+                format!("write one that makes up to {}", short(MOST_ROWS)),
+            );
+        }
+    }
     let known = Measurable {
         plant: plant.as_ref(),
         steady: steady.is_some(),

@@ -1,5 +1,6 @@
 //! `tuning` of a plant.
 
+use calcine_coupler::regular_file;
 use std::path::{Path, PathBuf};
 
 use calcine_flowsheet::{MeasuredDistribution, MeasuredPlace, Plant};
@@ -147,7 +148,7 @@ fn table_of(
         table.fail("file", rule, help);
         None
     };
-    let text = match std::fs::read_to_string(&path) {
+    let text = match regular_file::read_to_string(&path) {
         Ok(text) => text,
         Err(cause) => {
             let rule = format!("names {own}, which cannot be read: {cause}");

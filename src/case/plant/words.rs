@@ -58,6 +58,10 @@ pub enum PlantField {
     Solids,
     /// A compound in all phases.
     Compound,
+    /// Solids of a class of an attribute.
+    Class,
+    /// Their mean diameter by mass.
+    ClassMeanDiameter,
     /// Liquids per solids.
     Moisture,
     /// Temperature.
@@ -151,6 +155,8 @@ case_words! {
         "mass_flow" => PlantField::Mass,
         "solid_flow" => PlantField::Solids,
         "compound" => PlantField::Compound,
+        "class" => PlantField::Class,
+        "class_mean_diameter" => PlantField::ClassMeanDiameter,
         "moisture" => PlantField::Moisture,
         "temperature" => PlantField::Temperature,
         "mean_diameter" => PlantField::MeanDiameter,

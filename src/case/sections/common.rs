@@ -37,9 +37,12 @@ pub(super) fn existing(reader: &TableReader<'_>, key: &str, folder: &Path) -> Op
 /// The name of what results files hold under it: a group or a column of its own.
 pub(super) fn name_in_results<'a>(table: &TableReader<'a>) -> Option<&'a str> {
     let name = table.text("name")?;
-    if ["", ".", ".."].contains(&name.trim()) || name.contains(['/', ',', '"']) {
+    if ["", ".", ".."].contains(&name.trim())
+        || name.contains(['/', ',', '"', '[', ']'])
+        || name.contains(char::is_control)
+    {
         let rule = format!("is \"{name}\"");
-        let help = "results have it as a name: write a word, without slashes, commas and quotes";
+        let help = "results have it as a name: write a word, without slashes, commas, quotes, brackets and control characters";
         table.fail("name", rule, help);
     }
     Some(name)

@@ -8,6 +8,21 @@ use super::zone::zone;
 use crate::case::model::{FeedSpec, MotionSpec, Population};
 use crate::case::table::TableReader;
 
+/// Refuses tables of one name.
+fn names_differ(tables: &[TableReader<'_>], what: &str) {
+    let mut seen = Vec::new();
+    for table in tables {
+        let Some(name) = table.text("name") else {
+            continue;
+        };
+        if seen.contains(&name) {
+            let help = format!("names of {what} must differ");
+            table.fail("name", format!("is \"{name}\" a second time"), &help);
+        }
+        seen.push(name);
+    }
+}
+
 fn region(table: &TableReader<'_>) -> Option<Zone> {
     let region = table.table("region")?;
     let zone = zone(&region);
@@ -17,6 +32,7 @@ fn region(table: &TableReader<'_>) -> Option<Zone> {
 
 pub(super) fn feeds(root: &TableReader<'_>, particles: Option<&[Population]>) -> Vec<FeedSpec> {
     let tables = root.tables("feeds");
+    names_differ(&tables, "feeds");
     tables
         .iter()
         .filter_map(|table| feed(table, particles))
@@ -77,5 +93,7 @@ pub(super) fn outlets(root: &TableReader<'_>) -> Vec<Outlet> {
             rate,
         })
     };
-    root.tables("outlets").iter().filter_map(one).collect()
+    let tables = root.tables("outlets");
+    names_differ(&tables, "outlets");
+    tables.iter().filter_map(one).collect()
 }

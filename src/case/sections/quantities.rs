@@ -14,7 +14,7 @@ use crate::case::model::{
 use calcine_coupler::physics::solids::SolidSpecies;
 
 use crate::case::table::TableReader;
-use crate::case::tolerance::band;
+use crate::case::tolerance::{band, band_about};
 use crate::case::units::Dimension;
 use crate::case::words::{DifferenceField, GasField, ParticleField};
 
@@ -83,7 +83,7 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
     let expect = expected.and_then(|reader| {
         let at = reader.number("at");
         let value = reader.number_as("value", dimension);
-        let within = band(&reader, "within", dimension);
+        let within = band_about(&reader, value, dimension);
         reader.finish();
         Some(Expect {
             at,

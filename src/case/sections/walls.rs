@@ -173,6 +173,11 @@ fn cone(table: &TableReader<'_>) -> Option<WallShape> {
 /// The parts of the mesh's boundary that carry one of the named patches: sides of a generated mesh, triangles of a mesh of files.
 fn of_mesh(table: &TableReader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(String, WallShape)>> {
     let wanted = table.texts("patches")?;
+    if wanted.is_empty() {
+        let help = "name patches of the mesh, or remove the wall";
+        table.fail("patches", "names no patch", help);
+        return None;
+    }
     let parts = match parts(mesh?) {
         Ok(parts) => parts,
         Err(error) => {

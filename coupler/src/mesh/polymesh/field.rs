@@ -1,6 +1,6 @@
 //! Reading the cell values of a field that OpenFOAM wrote, ASCII or binary.
 
-use std::fs;
+use crate::regular_file;
 use std::path::Path;
 
 use super::error::PolyMeshError;
@@ -13,7 +13,7 @@ pub fn internal_field(
     components: usize,
     cells: usize,
 ) -> Result<Vec<f64>, PolyMeshError> {
-    let bytes = fs::read(file).map_err(|cause| PolyMeshError::Io {
+    let bytes = regular_file::read(file).map_err(|cause| PolyMeshError::Io {
         file: file.to_path_buf(),
         cause,
     })?;
@@ -107,6 +107,8 @@ fn ascii(scan: &mut Scanner<'_>, components: usize) -> Result<Vec<f64>, PolyMesh
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     const DIMENSIONS: &str = "dimensions [0 1 -1 0 0 0 0];\n";

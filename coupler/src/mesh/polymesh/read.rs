@@ -1,6 +1,6 @@
 //! Reading a polyMesh folder.
 
-use std::fs;
+use crate::regular_file;
 use std::path::Path;
 
 use calcine_physics::Vec3;
@@ -56,7 +56,7 @@ fn in_file<T>(
     body: impl FnOnce(&mut Scanner<'_>, &Header) -> Result<T, PolyMeshError>,
 ) -> Result<T, PolyMeshError> {
     let file = dir.join(name);
-    let bytes = fs::read(&file).map_err(|cause| PolyMeshError::Io {
+    let bytes = regular_file::read(&file).map_err(|cause| PolyMeshError::Io {
         file: file.clone(),
         cause,
     })?;

@@ -55,6 +55,9 @@ pub struct Granulator {
     bed_kernel: Option<BedKernel>,
 }
 
+/// Share of the mass in the last size class from which a kernel that gels is taken to have done so.
+const GELLED: f64 = 1e-4;
+
 const FEED: usize = 0;
 const SPRAY: usize = 1;
 const GAS: usize = 2;
@@ -406,15 +409,16 @@ impl ProcessUnit for Granulator {
         let masses = layout.by_size(view.state);
         let all: f64 = masses.iter().sum();
         let last = masses[masses.len() - 1] / all;
+        let gels = self.sizes.processes.iter().find_map(|p| p.gels());
+        if let Some(degree) = gels.filter(|_| last > GELLED) {
+            return Err(PlantError::Gels {
+                place: format!("granulator \"{}\"", view.name),
+                time: view.time,
+                share: last,
+                degree,
+            });
+        }
         if last > OUTSIDE.sqrt() || !last.is_finite() {
-            if let Some(degree) = self.sizes.processes.iter().find_map(|p| p.gels()) {
-                return Err(PlantError::Gels {
-                    place: format!("granulator \"{}\"", view.name),
-                    time: view.time,
-                    share: last,
-                    degree,
-                });
-            }
             return Err(PlantError::GrownBeyond {
                 place: format!("granulator \"{}\"", view.name),
                 time: view.time,

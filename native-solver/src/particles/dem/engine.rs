@@ -315,7 +315,9 @@ impl Engine {
     fn check(&self) -> Result<(), EscapedParticle> {
         let (low, high) = match self.contacts.lost {
             LostParticles::End => self.contacts.bounds,
-            LostParticles::TakeOut => (Vec3::repeat(f64::MIN), Vec3::repeat(f64::MAX)),
+            LostParticles::TakeOut | LostParticles::Through => {
+                (Vec3::repeat(f64::MIN), Vec3::repeat(f64::MAX))
+            }
         };
         for (k, place) in self.spheres.place[..self.spheres.len()].iter().enumerate() {
             let centre = self.contacts.periodicity.wrap(place.centre);
