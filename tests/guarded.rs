@@ -524,3 +524,137 @@ fn what_is_stated_without_an_effect_and_what_is_left_out_is_warned_of() {
         "{found:?}"
     );
 }
+
+#[test]
+fn pipes_are_no_input_files_and_are_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    of_file(folder.path(), "bead.csv");
+    let rows = "x,y,z\n0.005,0.005,0.29\n";
+    let plate = fs::read(at("plate.stl")).unwrap();
+    fs::write(at("bead.csv"), rows).unwrap();
+    let text = fs::read(at("of-file.toml")).unwrap();
+    for (name, content) in [
+        ("bead.csv", rows.as_bytes()),
+        ("plate.stl", &plate),
+        ("of-file.toml", &text),
+    ] {
+        fs::remove_file(at(name)).unwrap();
+        let made = Command::new("mkfifo").arg(at(name)).status().unwrap();
+        assert!(made.success());
+        let refused = calcine(&["check", "of-file.toml"], folder.path());
+        let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+        let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(!refused.status.success());
+        assert!(
+            told.contains(name) && told.contains("a pipe or a device"),
+            "{told}"
+        );
+        fs::remove_file(at(name)).unwrap();
+        fs::write(at(name), content).unwrap();
+    }
+}
+
+#[test]
+fn csv_without_names_of_columns_is_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    for rows in ["0.005,0.005,0.29\n", "# my bed\n0.005,0.005,0.29\n"] {
+        let (code, told) = checked(folder.path(), "bead.csv", rows);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains("names no column that is read"), "{told}");
+    }
+    let (code, told) = checked(
+        folder.path(),
+        "bead.csv",
+        "x,y,z,d\n0.005,0.005,0.29,1e-12\n"
+            .replace(",d\n", ",diameter\n")
+            .as_str(),
+    );
+    assert_eq!(code, Some(2), "{told}");
+    assert!(told.contains("below a nanometre"), "{told}");
+}
+
+#[test]
+fn typeset_signs_are_read_and_keys_that_no_case_has_are_refused() {
+    let with = |set: &str| read(&shipped("heated-column"), &[set.to_owned()]);
+    let minus = with("gas.gravity=0 0 \u{2212}9.81 m/s^2").unwrap();
+    assert_eq!(minus.gas.gravity.z, -9.81);
+    let micro = with("particles[0].diameter=900 \u{3bc}m").unwrap();
+    assert_eq!(micro.particles[0].sizes.largest(), 9e-4);
+    assert!(with("particles[0].diameter=1e-300 m").is_err());
+    assert!(with(&format!("{}=1", vec!["a"; 60_000].join("."))).is_err());
+    for name in ["top [K]", "a\\nb", "a\\u0000b"] {
+        let set = format!("quantities[0].name=\"{name}\"");
+        let errors = with(&set).unwrap_err();
+        assert!(errors.render().contains("brackets and control"), "{name}");
+    }
+    let errors = with("quantities[2].expect={ value = \"0 K\", within = \"5 %\" }").unwrap_err();
+    assert!(errors.render().contains("has no width"));
+}
+
+#[test]
+fn tables_of_one_name_and_walls_without_patches_are_refused() {
+    let with = |set: &str| {
+        read(&shipped("moving-bed"), &[set.to_owned()])
+            .unwrap_err()
+            .render()
+    };
+    let text = fs::read_to_string(shipped("moving-bed")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for what in ["feeds", "outlets"] {
+        let from = text.find(&format!("[[{what}]]")).unwrap();
+        let rest = &text[from..];
+        let end = rest.find("\n\n").map_or(rest.len(), |end| end + 2);
+        let case = folder.path().join(format!("{what}.toml"));
+        fs::write(&case, format!("{text}\n{}", &rest[..end])).unwrap();
+        let told = read(&case, &[]).unwrap_err().render();
+        assert!(told.contains("a second time"), "{told}");
+    }
+    let told = with("walls[0].patches=[]");
+    assert!(told.contains("names no patch"), "{told}");
+}
+
+/// The error of implicit steps between spheres that touch: 1/(2 e) of their rate times the step.
+#[test]
+fn the_error_of_steps_through_contacts_is_told() {
+    let line = |set: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let case = good("conducting-column");
+        let told = calcine(
+            &["check", case.to_str().unwrap(), "--set", set],
+            folder.path(),
+        );
+        let told = String::from_utf8(told.stdout).unwrap();
+        let line = told
+            .lines()
+            .find(|line| line.contains("error through contacts"));
+        let line = line.unwrap_or_else(|| panic!("{told}"));
+        let words = line.split_whitespace();
+        let number = words
+            .filter_map(|word| word.parse::<f64>().ok())
+            .next_back();
+        number.unwrap()
+    };
+    let [one, ten] = ["0.1 s", "1 s"].map(|step| line(&format!("time.motion_window={step}")));
+    assert!(one > 0.0 && (ten / one - 10.0).abs() < 0.1, "{one} {ten}");
+}
+
+/// A limit on the size of files is an error of the write, and the run can go on.
+#[test]
+fn a_limit_on_the_size_of_files_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_calcine");
+    let case = shipped("heated-column");
+    let line = format!(
+        "ulimit -f 20; exec {program} run {} --quiet --out out --set 'output.every=1 s'",
+        case.display()
+    );
+    let shell = Command::new("bash")
+        .args(["-c", &line])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&shell.stderr).into_owned();
+    assert_eq!(shell.status.code(), Some(1), "{told}");
+    assert!(told.contains("File too large"), "{told}");
+}

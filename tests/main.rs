@@ -46,6 +46,7 @@ mod moving_single;
 mod openfoam_models;
 mod parcels;
 mod plants;
+mod plants_kept;
 mod plants_tuned;
 mod prescribed_temperature;
 mod reactions;

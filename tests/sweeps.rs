@@ -116,3 +116,36 @@ fn a_run_that_fails_ends_no_other_and_its_words_are_told() {
     let output = sweep(folder.path(), "70").output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
 }
+
+#[test]
+fn a_key_that_stands_there_twice_and_a_table_of_the_users_own_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+        let case = shipped("heated-column");
+        command
+            .arg("sweep")
+            .arg(case)
+            .args(["--quiet", "--out", "out"])
+            .args(words);
+        command.current_dir(folder.path()).output().unwrap()
+    };
+    let twice = run(&["--set", "time.end=1 s", "--set", "time.end=2 s"]);
+    assert_eq!(twice.status.code(), Some(2));
+    assert!(
+        said(&twice).contains("`time.end` stands in two `--set`"),
+        "{}",
+        said(&twice)
+    );
+    let table = folder.path().join("out/sweep.csv");
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(&table, "my,data\n1,2\n").unwrap();
+    let foreign = run(&["--set", "time.end=1 s,2 s"]);
+    assert_eq!(foreign.status.code(), Some(2));
+    assert!(
+        said(&foreign).contains("is no table of a sweep"),
+        "{}",
+        said(&foreign)
+    );
+    assert_eq!(fs::read_to_string(&table).unwrap(), "my,data\n1,2\n");
+}

@@ -54,6 +54,7 @@ pub(super) fn all(case: &Case) -> Vec<String> {
         all.extend(outside(&own, range, &data));
         unusual.extend(own);
     }
+    unusual.extend(of_walls(case));
     all.extend(strange(&unusual));
     all
 }
@@ -136,6 +137,25 @@ fn of_gas(case: &Case) -> Vec<Stated> {
         all.extend(values.map(|values| Stated::new(format!("gas.patch.{name}"), values)));
     }
     all
+}
+
+/// Of walls and surroundings that particles conduct and radiate to.
+fn of_walls(case: &Case) -> Vec<Stated> {
+    let walls = case.walls.iter().zip(&case.wall_temperatures);
+    let walls = walls.filter_map(|(wall, over_time)| {
+        let values = over_time.as_ref()?.0.iter().map(|entry| entry.1);
+        Some(Stated::new(
+            format!("walls.{}.temperature", wall.name),
+            values,
+        ))
+    });
+    let radiation = case.laws.radiation.as_ref();
+    let around = radiation.and_then(|one| one.surroundings.as_ref());
+    let around = around.map(|over_time| {
+        let values = over_time.0.iter().map(|entry| entry.1);
+        Stated::new("laws.radiation.surroundings", values)
+    });
+    walls.chain(around).collect()
 }
 
 /// Of particles at the start, as prescribed, and as they are fed.

@@ -31,7 +31,14 @@ impl SignalThread {
         })?;
         let handle = signals.handle();
         let on_signal = interrupts.clone();
-        std::thread::spawn(move || signals.forever().for_each(|_| on_signal.raise()));
+        std::thread::spawn(move || {
+            signals.forever().for_each(|_| {
+                on_signal.raise();
+                if on_signal.count() == 2 {
+                    std::thread::spawn(end_at_once);
+                }
+            });
+        });
         if let Some(limit) = stop_after {
             let on_time = interrupts.clone();
             std::thread::spawn(move || {
@@ -43,6 +50,18 @@ impl SignalThread {
         }
         Ok(Self(handle))
     }
+}
+
+/// How long a run that was interrupted twice may take to end by itself, its solvers with it.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Ends the process where the run does not.
+fn end_at_once() {
+    std::thread::sleep(PATIENCE);
+    eprintln!(
+        "interrupted twice, and the run did not come to a place where it can stop: ended; `--resume` goes on from its last checkpoint"
+    );
+    std::process::exit(exit::INTERRUPTED.into());
 }
 
 /// True of a signal that this process was started to ignore, as Linux tells.

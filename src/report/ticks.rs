@@ -89,6 +89,6 @@ mod tests {
             high: 2.3,
         };
         assert_eq!(digits(range, 0.25), 3);
-        assert_eq!(digits(range, 0.2), 2);
+        assert_eq!(digits(range, 0.5), 2);
     }
 }

@@ -192,6 +192,9 @@ fn warp(mesh: &Mesh, face: usize) -> f64 {
     }
 }
 
+/// Ratio of the mean extents of cells along two axes from which their bins have another shape than cubes.
+const ELONGATED: f64 = 16.0;
+
 /// A regular grid over a box, about as many bins as cells; crowded bins hold a finer grid.
 #[derive(Clone, Debug)]
 struct Bins {
@@ -233,8 +236,20 @@ impl Bins {
 
     fn over([lower, upper]: [Vec3; 2], cells: &[u32], boxes: &[[Vec3; 2]], depth: usize) -> Self {
         let size = upper - lower;
+        // Bins of long cells are as long as they are; in cubes each would lie in very many.
+        let mean = cells.iter().fold(Vec3::zeros(), |sum, &cell| {
+            let [low, high] = boxes[cell as usize];
+            sum + (high - low) / cells.len() as f64
+        });
+        let shape = match mean.max() > ELONGATED * mean.min() && mean.min() > 0.0 {
+            true => mean / mean.product().cbrt(),
+            false => Vec3::repeat(1.0),
+        };
         let edge = (size.product() / cells.len() as f64).cbrt();
-        let along = |axis: usize| ((size[axis] / edge).ceil() as usize).clamp(1, cells.len());
+        let along = |axis: usize| {
+            let count = (size[axis] / (edge * shape[axis])).ceil();
+            (count as usize).clamp(1, cells.len())
+        };
         let mut bins = Self {
             lower,
             upper,

@@ -69,7 +69,7 @@ pub enum ParcelError {
     },
     /// A packing that was not solved.
     #[error(
-        "the solid fraction of the packing was not solved: {residual:.1e} of a cell's volume is left after {iterations} iterations"
+        "the solid fraction of the packing was not solved: {residual:.1e} of a cell's volume is left after {iterations} iterations; parcels that begin closer than `motion.parcels.close_packing` find no place: place fewer of them, lower their `weight`, or shorten `time.motion_window`"
     )]
     NotPacked {
         /// Largest residual as a solid fraction.

@@ -34,6 +34,11 @@ pub(super) fn controller(
             own.fail("field", "is of a controller", help);
             return None;
         }
+        (PlantField::Class | PlantField::ClassMeanDiameter, _) => {
+            let help = "control by a field of all particles";
+            own.fail("field", "is of an attribute class", help);
+            return None;
+        }
         (PlantField::Compound, None) => {
             own.missing("of");
             return None;

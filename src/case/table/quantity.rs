@@ -38,6 +38,9 @@ fn unit_of(key: &str, dimension: Dimension) -> String {
     }
 }
 
+/// Highest temperature in K that a case may state.
+const HOTTEST: f64 = 1e5;
+
 impl TableReader<'_> {
     /// A quantity with its unit, in SI, or a plain number, as it is declared; without it its default.
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -78,6 +81,11 @@ impl TableReader<'_> {
 
     /// True where a value is within the bound of its key; an error else.
     fn within(&self, key: &str, value: f64, dimension: Dimension, bound: Bound) -> bool {
+        if dimension == Dimension::TEMPERATURE && value > HOTTEST {
+            let rule = format!("is {} K", shown(value));
+            self.refuse(key, &rule, format!("it is at most {HOTTEST} K"));
+            return false;
+        }
         let holds = bound.holds(value);
         if !holds {
             let rule = format!("is {} {}", shown(value), unit_of(key, dimension));
@@ -176,8 +184,9 @@ impl TableReader<'_> {
         dimension: Dimension,
         bound: Bound,
     ) -> bool {
-        let outside = points.iter().find(|point| !bound.holds(point.1));
-        outside.is_none_or(|point| self.within(key, point.1, dimension, bound))
+        points
+            .iter()
+            .all(|point| self.within(key, point.1, dimension, bound))
     }
 
     fn points(

@@ -80,7 +80,7 @@ const MEASURED_VALUES: &[Key] = &[
     key("stream", Text, OneOf, "The stream. Either this or `unit`.", "\"product\""),
     key("unit", Text, OneOf, "The unit. Either this or `stream`.", "\"granulator\""),
     key("field", Choice(words::<PlantField>), Required, "What was measured.", "\"mean_diameter\""),
-    key("of", Text, Without("required with `compound`"), "Compound of the field `compound`.", "\"water\""),
+    key("of", Text, Without("required with `compound` and `class`"), "Compound of the field `compound`, or attribute class of `class` and `class_mean_diameter`, such as `colour 1`.", "\"water\""),
     key("file", Path, Required, "CSV file: a head of `time_s` and another word; in each row a time in s and the value in SI units.", "\"means.csv\""),
     key("deviation", Measured, Required, "Standard deviation of a value, in the unit of the field.", "\"5 um\""),
 ];
