@@ -42,6 +42,8 @@ pub(crate) enum VtkError {
 pub(crate) struct VtkFile<'b> {
     /// Arrays of each `<Piece>`.
     pub pieces: Vec<Vec<DataArray>>,
+    /// `NumberOfPoints` of each, where it is stated.
+    pub points: Vec<Option<usize>>,
     appended: Appended<'b>,
 }
 
@@ -77,6 +79,7 @@ struct Appended<'b> {
 pub(crate) fn read(bytes: &[u8]) -> Result<VtkFile<'_>, VtkError> {
     let mut reader = Reader::from_reader(bytes);
     let mut pieces: Vec<Vec<DataArray>> = Vec::new();
+    let mut points: Vec<Option<usize>> = Vec::new();
     let mut appended = Appended::default();
     let mut open: Vec<String> = Vec::new();
     let mut is_vtk = false;
@@ -88,7 +91,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<VtkFile<'_>, VtkError> {
                         is_vtk = true;
                         appended.header = header(&element)?;
                     }
-                    "Piece" => pieces.push(Vec::new()),
+                    "Piece" => {
+                        pieces.push(Vec::new());
+                        let stated = attribute(&element, "NumberOfPoints")?;
+                        points.push(stated.and_then(|text| text.trim().parse().ok()));
+                    }
                     "DataArray" => {
                         if let (Some(piece), Some(section)) = (pieces.last_mut(), open.last()) {
                             piece.push(DataArray::new(section, &element)?);
@@ -135,7 +142,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<VtkFile<'_>, VtkError> {
     if !is_vtk {
         return Err(VtkError::Root);
     }
-    Ok(VtkFile { pieces, appended })
+    Ok(VtkFile {
+        pieces,
+        points,
+        appended,
+    })
 }
 
 /// Time and file of each entry of a `.pvd` collection.

@@ -658,3 +658,35 @@ fn a_limit_on_the_size_of_files_is_told() {
     assert_eq!(shell.status.code(), Some(1), "{told}");
     assert!(told.contains("File too large"), "{told}");
 }
+
+#[test]
+fn hot_water_a_mesh_in_millimetres_and_a_cut_snapshot_are_told() {
+    let told = |name: &str, set: &[&str], words: &str| {
+        let set: Vec<String> = set.iter().map(|one| (*one).to_owned()).collect();
+        let case = ValidCase::open(&shipped(name), &set).unwrap().case;
+        case.warnings.iter().any(|one| one.contains(words))
+    };
+    let boils = "at which its water boils";
+    assert!(told(
+        "wood-drying",
+        &["particles[0].temperature=400 K"],
+        boils
+    ));
+    assert!(!told("wood-drying", &[], boils));
+    let wide = "times as wide as its bed";
+    let large = ["mesh.box.size=\"24 24 64 m\"", "time.end=10 s"];
+    assert!(told("wood-drying", &large, wide));
+    assert!(!told("wood-drying", &[], wide));
+    let folder = tempfile::tempdir().unwrap();
+    let vtp = |stated: usize| {
+        format!(
+            "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"{stated}\"><Points><DataArray \
+             type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0.005 0.005 0.29</DataArray></Points></Piece></PolyData></VTKFile>"
+        )
+    };
+    let (code, said) = checked(folder.path(), "bead.vtp", &vtp(1));
+    assert_eq!(code, Some(0), "{said}");
+    let (code, said) = checked(folder.path(), "bead.vtp", &vtp(3));
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("states 3 points, but holds 1"), "{said}");
+}

@@ -1,10 +1,11 @@
 //! Numbers of a case that are far from those that things have.
 
 use calcine_coupler::interior::reacting::Rate;
+use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::film::FilmDiffusivity;
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
-use calcine_coupler::setup::GasPatch;
+use calcine_coupler::setup::{GasPatch, ParticleSetup};
 
 use super::model::Case;
 use super::span;
@@ -218,6 +219,31 @@ fn prescribed(case: &Case) -> Option<String> {
             "`particles.{}` has a prescribed temperature, but `laws.heat_transfer` is none: it heats no gas; choose a law of heat \
              transfer if it should",
             held.name
+        )
+    })
+}
+
+/// Extents of the mesh over those of the bed, along every axis, from which its lengths are likely in another unit.
+const WIDE: f64 = 100.0;
+/// Particles from which on a bed has extents.
+const BED: usize = 10;
+
+/// A warning of a mesh that is far larger than its bed in every direction.
+pub(super) fn wide_mesh(mesh: &Mesh, setup: &ParticleSetup) -> Option<String> {
+    if setup.id.len() < BED {
+        return None;
+    }
+    let (mut low, mut high) = (setup.position[0], setup.position[0]);
+    for (centre, radius) in setup.position.iter().zip(&setup.radius) {
+        low = low.inf(&centre.add_scalar(-radius));
+        high = high.sup(&centre.add_scalar(*radius));
+    }
+    let [from, to] = mesh.bounds();
+    let ratio = (to - from).component_div(&(high - low)).min();
+    (ratio > WIDE).then(|| {
+        format!(
+            "the mesh is {} times as wide as its bed along every axis: check the units of its lengths; those of meshes in files are m",
+            short3(ratio)
         )
     })
 }

@@ -1,10 +1,12 @@
 //! Temperatures that a case states outside the data of what has them.
 
+use calcine_coupler::interior::reacting::Rate;
+use calcine_coupler::physics::moisture::antoine::boiling_temperature;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasPatch, WallHeat};
 
 use super::model::{Case, PlacementSpec, Population};
-use super::units::shown;
+use super::units::{short3, shown};
 
 /// Temperatures in K beyond which one is likely in another unit, or a slip.
 const USUAL: [f64; 2] = [50.0, 5000.0];
@@ -54,6 +56,7 @@ pub(super) fn all(case: &Case) -> Vec<String> {
         all.extend(outside(&own, range, &data));
         unusual.extend(own);
     }
+    all.extend(case.particles.iter().filter_map(|one| boils(case, one)));
     unusual.extend(of_walls(case));
     all.extend(strange(&unusual));
     all
@@ -137,6 +140,34 @@ fn of_gas(case: &Case) -> Vec<Stated> {
         all.extend(values.map(|values| Stated::new(format!("gas.patch.{name}"), values)));
     }
     all
+}
+
+/// A warning of water that is above its boiling point when the run begins.
+fn boils(case: &Case, population: &Population) -> Option<String> {
+    let chemistry = &case.chemistry;
+    let start = chemistry.compositions.get(population.material)?;
+    let wet = chemistry.reactions.iter().any(|one| {
+        matches!(one.rate, Rate::Evaporation(_))
+            && one
+                .solids
+                .iter()
+                .any(|&(s, n)| n < 0.0 && start.get(s).is_some_and(|y| *y > 0.0))
+    });
+    let boiling = boiling_temperature(case.gas.pressure);
+    let begins = population.prescribed_temperature.is_none() && wet;
+    (begins && population.temperature > boiling).then(|| {
+        format!(
+            "`particles.{}.temperature` is {} K, above the {} K at which its water boils: it flashes in the first window, which may not be \
+             resolved; begin below, or shorten {}",
+            population.name,
+            shown(population.temperature),
+            short3(boiling),
+            match case.time.process_step {
+                Some(_) => "`time.process_step`",
+                None => "`time.motion_window`",
+            }
+        )
+    })
 }
 
 /// Of walls and surroundings that particles conduct and radiate to.

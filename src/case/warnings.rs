@@ -38,6 +38,7 @@ pub fn warnings(
     all.extend(overlap::deepest(case, setup, mesh.periodicity()));
     all.extend(patch_cautions::columns(case, mesh));
     all.extend(size_cautions::pores(case));
+    all.extend(size_cautions::wide_mesh(mesh, setup));
     all.extend(mesh_shape::report(mesh).1);
     all.extend(contacts::warnings(case, mesh, setup));
     let fastest = FastestContact::of(case, setup, mesh.periodicity());

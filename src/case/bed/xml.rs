@@ -14,7 +14,7 @@ pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, Fault> {
         values.map_err(|error| fault(error.to_string()))
     };
     let mut sheet = Sheet::default();
-    for piece in &file.pieces {
+    for (piece, stated) in file.pieces.iter().zip(&file.points) {
         let section = |name: &'static str| piece.iter().filter(move |array| array.section == name);
         let mut part = Sheet::default();
         for array in section("Points") {
@@ -27,6 +27,11 @@ pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, Fault> {
             return Err(fault("a <Piece> has no <Points>"));
         };
         let count = first.len();
+        if let Some(stated) = stated.filter(|stated| *stated != count) {
+            return Err(fault(format!(
+                "a <Piece> states {stated} points, but holds {count}: it was cut short or changed"
+            )));
+        }
         for array in section("PointData") {
             let values = values(array)?;
             if values.len() != count * array.components {
