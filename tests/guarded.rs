@@ -690,3 +690,20 @@ fn hot_water_a_mesh_in_millimetres_and_a_cut_snapshot_are_told() {
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("states 3 points, but holds 1"), "{said}");
 }
+
+/// Cells that are a million times as long as they are wide: their bins are as long, and `check` ends at once.
+#[test]
+fn a_mesh_of_long_cells_is_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = shipped("packed-column");
+    let line = format!(
+        "ulimit -v 4000000; exec {} check {} --set 'mesh.cylinder.length=1e6 m'",
+        env!("CARGO_BIN_EXE_calcine"),
+        case.display()
+    );
+    let mut shell = Command::new("timeout");
+    shell.args(["100", "bash", "-c", &line]);
+    let output = shell.current_dir(folder.path()).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{told}");
+}
