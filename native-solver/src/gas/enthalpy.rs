@@ -54,6 +54,8 @@ pub struct Enthalpy {
     preconditioner: Incomplete,
     /// Gradients of h and T, from the last iterate.
     gradients: [Vec<Vec3>; 2],
+    /// True where they are of the enthalpy at hand: of a single gas nothing but a solve changes it in an attempt.
+    hold: bool,
     faces: Vec<f64>,
     /// What the last solve took and gave.
     pub taken: EnthalpyFlows,
@@ -169,6 +171,7 @@ impl Enthalpy {
             given: [vec![0.0; cells], vec![0.0; cells]],
             preconditioner: Incomplete::default(),
             gradients: [vec![Vec3::zeros(); cells], vec![Vec3::zeros(); cells]],
+            hold: false,
             faces: vec![0.0; faces],
             taken: EnthalpyFlows::default(),
         }
@@ -179,11 +182,9 @@ impl Enthalpy {
         (&self.matrix, &self.source)
     }
 
-    /// Forgets what earlier attempts left, so that a repeated or resumed window takes the same path.
+    /// Takes up another state.
     pub fn begin(&mut self) {
-        for gradients in &mut self.gradients {
-            fill(gradients, |_| Vec3::zeros());
-        }
+        self.hold = false;
     }
 
     /// Assembles the equation; `carried` is the enthalpy that species carry out of the owner of each face in W
@@ -298,6 +299,31 @@ impl Enthalpy {
     ) {
         let grid = frame.grid;
         let second = frame.convection != Convection::Upwind && species.is_empty();
+        if !self.hold {
+            self.update_gradients(frame, second, now);
+            self.hold = frame.species() == 0;
+        }
+        let [carried, conducted] = &self.gradients;
+        let conduction = &self.conduction;
+        let explicit = |index: usize| {
+            let mut out = species.get(index).copied().unwrap_or(0.0);
+            let flux = now.flux[index];
+            if second && index < grid.internal && flux != 0.0 {
+                let scheme = frame.convection;
+                out += flux * beyond_upwind(scheme, grid, index, flux, &now.enthalpy, carried);
+            }
+            if !grid.orthogonal && conduction[index] != 0.0 {
+                out += conduction[index] * displacement(grid, &grid.faces[index], conducted);
+            }
+            out
+        };
+        update(&mut self.explicit, |index, last| {
+            follow(last, explicit(index), share)
+        });
+    }
+
+    fn update_gradients(&mut self, frame: &AttemptFrame<'_>, second: bool, now: &GasState) {
+        let grid = frame.grid;
         if second {
             let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {
                 FaceCondition::Wall {
@@ -323,23 +349,6 @@ impl Enthalpy {
             let (found, faces) = (&mut self.gradients[1], &mut self.faces);
             gradients(grid, &now.temperature, boundary, found, faces);
         }
-        let [carried, conducted] = &self.gradients;
-        let conduction = &self.conduction;
-        let explicit = |index: usize| {
-            let mut out = species.get(index).copied().unwrap_or(0.0);
-            let flux = now.flux[index];
-            if second && index < grid.internal && flux != 0.0 {
-                let scheme = frame.convection;
-                out += flux * beyond_upwind(scheme, grid, index, flux, &now.enthalpy, carried);
-            }
-            if !grid.orthogonal && conduction[index] != 0.0 {
-                out += conduction[index] * displacement(grid, &grid.faces[index], conducted);
-            }
-            out
-        };
-        update(&mut self.explicit, |index, last| {
-            follow(last, explicit(index), share)
-        });
     }
 
     /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K).
@@ -367,6 +376,7 @@ impl Enthalpy {
             iterations: ITERATIONS,
         };
         self.preconditioner.expire();
+        self.hold = false;
         let solved = krylov.general(
             &self.matrix,
             &mut self.preconditioner,

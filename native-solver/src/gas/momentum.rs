@@ -135,11 +135,6 @@ impl Momentum {
         }
     }
 
-    /// Forgets what earlier attempts left, so that a repeated or resumed window takes the same path.
-    pub fn begin(&mut self) {
-        fill(&mut self.gradients, |_| Matrix3::zeros());
-    }
-
     /// Assembles A and b for the fluxes and properties at hand.
     /// Of what is explicit a share follows the fields.
     pub fn assemble(

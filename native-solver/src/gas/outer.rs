@@ -117,10 +117,9 @@ impl Equations {
         if begin == Begin::Window {
             self.windows = self.windows.wrapping_add(1);
             self.pressure.forget(frame);
-            self.momentum.begin();
-            self.enthalpy.begin();
             self.species.begin(frame);
         }
+        self.enthalpy.begin();
         if begin != Begin::Again {
             self.pressure.begin(frame);
         }
@@ -128,12 +127,7 @@ impl Equations {
         self.share = 1.0;
         self.closer = 1.0;
         self.watch = Stopwatch::of_window(self.windows, frame.grid.cells());
-        if frame.grid.orthogonal {
-            self.assess_flow(frame, now);
-        } else {
-            // Twice, as gradients follow from the last ones.
-            self.assess(frame, now);
-        }
+        self.assess_flow(frame, now);
         let mut pace = Pace::new(controls, self.flow);
         for outer in 1..=controls.outer_iterations.max(1) {
             convergence.linear_iterations +=

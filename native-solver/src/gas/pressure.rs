@@ -111,6 +111,8 @@ pub struct Pressure {
     warp: Vec<Matrix3<f64>>,
     /// Σ p_f S/V of each cell in Pa/m, p_f from the cell's own half; empty where no centre is displaced along a face.
     along: Vec<Vec3>,
+    /// What slopes of pressure in half cells have beyond F (`update_slopes`).
+    slopes: Vec<[f64; 2]>,
     /// Corrections since the matrix was assembled.
     corrections: u32,
     /// Memory for the next.
@@ -141,6 +143,7 @@ impl Pressure {
             old_reach: Vec::new(),
             warp,
             along: Vec::new(),
+            slopes: vec![[0.0; 2]; faces],
             corrections: 0,
             scratch: Vec::new(),
         }
@@ -313,7 +316,8 @@ impl Pressure {
         );
         self.update_flux(frame, now);
         self.corrections += 1;
-        self.update_along(frame, momentum, now);
+        self.update_slopes(&now.flux);
+        self.update_along(frame, momentum);
         self.update_velocity(frame, momentum, now);
         solved.iterations
     }
@@ -380,20 +384,23 @@ impl Pressure {
         }
     }
 
-    /// What the slope of pressure in a half cell has along the face's normal beyond the cell's own force F, but for what the flux and the
-    /// old one have there beyond the cell's by their gradients; in Pa/m.
-    #[inline]
-    fn slope_beyond(&self, flux: &[f64], index: usize, side: usize) -> f64 {
-        let face = &self.matrix.grid().faces[index];
-        let mut passing = flux[index] / face.area;
-        let mut beside = self.beside(index)[side];
-        if let (Some(reach), Some(old)) =
-            (self.transport.reach.get(index), self.old_reach.get(index))
-        {
-            passing -= reach[side];
-            beside -= old[side];
-        }
-        beside - passing / self.along_normal[index][side]
+    /// What the slope of pressure in the half cells of each face's owner and neighbour has along its normal beyond the cell's own force F,
+    /// but for what the flux and the old one have there beyond the cell's by their gradients; in Pa/m.
+    fn update_slopes(&mut self, flux: &[f64]) {
+        let mut slopes = std::mem::take(&mut self.slopes);
+        let (grid, reach, old) = (self.matrix.grid(), &self.transport.reach, &self.old_reach);
+        fill(&mut slopes, |index| {
+            let passing = flux[index] / grid.faces[index].area;
+            let ([own, other], [b_own, b_other]) = (self.beside(index), self.along_normal[index]);
+            match (reach.get(index), old.get(index)) {
+                (Some(reach), Some(old)) => [
+                    own - old[0] - (passing - reach[0]) / b_own,
+                    other - old[1] - (passing - reach[1]) / b_other,
+                ],
+                _ => [own - passing / b_own, other - passing / b_other],
+            }
+        });
+        self.slopes = slopes;
     }
 
     /// Force on the half cell of a face's owner along the face's normal, in N/m³.
@@ -468,7 +475,7 @@ impl Pressure {
     /// The gradient by which pressures are carried along faces, from the values that each cell's half gives on its faces. It does not
     /// take up its own last value where cells repeat, and so settles at any skewness: the gradient that the velocities leave
     /// does, and grows from one correction to the next beyond 30° of shear.
-    fn update_along(&mut self, frame: &AttemptFrame<'_>, momentum: &Momentum, now: &GasState) {
+    fn update_along(&mut self, frame: &AttemptFrame<'_>, momentum: &Momentum) {
         let grid = frame.grid;
         if grid.orthogonal {
             return;
@@ -489,10 +496,7 @@ impl Pressure {
                 };
                 let slope = match self.recovery.turns(grid, index) {
                     true => last[cell].dot(&face.normal),
-                    false => {
-                        self.force[cell].dot(&face.normal)
-                            + self.slope_beyond(&now.flux, index, side)
-                    }
+                    false => self.force[cell].dot(&face.normal) + self.slopes[index][side],
                 };
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
@@ -514,10 +518,8 @@ impl Pressure {
     /// adds, by which the pressures on the two sides of a face differ.
     fn update_velocity(&self, frame: &AttemptFrame<'_>, momentum: &Momentum, now: &mut GasState) {
         let grid = frame.grid;
-        let flux = &now.flux;
-        // What the slopes have beyond the cell's own force F.
         fill(&mut now.pressure_gradient, |cell| {
-            let slope = |index: usize, side: usize| self.slope_beyond(flux, index, side);
+            let slope = |index: usize, side: usize| self.slopes[index][side];
             self.force[cell] + self.recovery.vector(grid, cell, slope)
         });
         let gradients = &now.pressure_gradient;

@@ -42,6 +42,8 @@ pub struct FaceTransport {
     /// What ρ ε u has at each face beyond its owner's and its neighbour's, along its normal, by their gradients; in kg/m²/s.
     /// Empty where lines between centres are normal to faces.
     pub reach: Vec<[f64; 2]>,
+    /// ρ ε u·n at each face: of the cells beside it, and on the boundary of the flux. Empty as `reach`.
+    passing: Vec<f64>,
     /// What a cell's value would be of the values that the cells give on its faces, less its own.
     bent: Vec<Vec3>,
 }
@@ -57,6 +59,7 @@ impl FaceTransport {
             per_flux: vec![[0.0; 2]; cells],
             plain: Vec::new(),
             reach: Vec::new(),
+            passing: Vec::new(),
             bent: Vec::new(),
         }
     }
@@ -84,6 +87,7 @@ impl FaceTransport {
             [momentum.transport(frame, cell), 1.0 / held]
         });
         let (gradients, mass_velocity, bent) = (&self.gradients, &self.mass_velocity, &self.bent);
+        let passing = &self.passing;
         let per_flux = &self.per_flux;
         let per_flux = |cell: usize, normal: &Vec3| {
             let [transport, by_mass] = per_flux[cell];
@@ -101,7 +105,7 @@ impl FaceTransport {
                 weight * here + (1.0 - weight) * there - bend
             } else {
                 let bend = weight * bent[own] + (1.0 - weight) * bent[other];
-                interpolated(grid, index, mass_velocity, gradients) - bend.dot(&face.normal)
+                passing[index] - bend.dot(&face.normal)
             };
             [
                 per_flux(own, &face.normal) * (mean - here),
@@ -167,16 +171,15 @@ impl FaceTransport {
             return;
         }
         let (mass_velocity, gradients, reach) = (&self.mass_velocity, &self.gradients, &self.reach);
+        self.passing.resize(grid.faces.len(), 0.0);
+        fill(&mut self.passing, |index| match index < grid.internal {
+            true => interpolated(grid, index, mass_velocity, gradients),
+            false => now.flux[index] / grid.faces[index].area,
+        });
+        let passing = &self.passing;
         self.bent.resize(grid.cells(), Vec3::zeros());
         fill(&mut self.bent, |cell| {
-            let part = |index: usize, side: usize| {
-                let passing = if index < grid.internal {
-                    interpolated(grid, index, mass_velocity, gradients)
-                } else {
-                    now.flux[index] / grid.faces[index].area
-                };
-                passing - reach[index][side]
-            };
+            let part = |index: usize, side: usize| passing[index] - reach[index][side];
             recovery.vector(grid, cell, part) - mass_velocity[cell]
         });
     }

@@ -3,6 +3,8 @@
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 
+use super::least_squares::LeastSquares;
+
 /// Directions shorter than this share of the distance between centres count as round-off.
 const SKEW: f64 = 1e-9;
 /// A centre farther along a face than this many times its distance from the face's plane counts as one at the limit: corrections are limited
@@ -109,6 +111,8 @@ pub struct MeshGraph {
     pub orthogonal: bool,
     /// What the neighbour's coordinates lack to lie beside the face, of each pair of periodic faces, in m.
     shifts: Vec<Vec3>,
+    /// What gradients by least squares need, where they are made.
+    least_squares: LeastSquares,
     links: Vec<CellFace>,
     link_offsets: Vec<u32>,
     row_offsets: Vec<u32>,
@@ -147,6 +151,7 @@ impl MeshGraph {
             internal,
             orthogonal,
             shifts: pairs.iter().map(|pair| -pair.translation).collect(),
+            least_squares: LeastSquares::default(),
             links: Vec::with_capacity(mesh.faces() + inside),
             link_offsets: vec![0],
             row_offsets: vec![0],
@@ -178,7 +183,26 @@ impl MeshGraph {
             }
             grid.link_offsets.push(grid.links.len() as u32);
         }
+        if !orthogonal {
+            grid.least_squares = grid.make_least_squares();
+        }
         grid
+    }
+
+    fn make_least_squares(&self) -> LeastSquares {
+        let between: Vec<Vec3> = (0..self.internal).map(|face| self.between(face)).collect();
+        LeastSquares::new(&between, self.cells(), |cell| {
+            let links = self.links(cell).iter();
+            let inside = links.clone().filter(|link| !link.is_boundary());
+            let faces = inside.map(|link| link.face as usize);
+            (faces, links.clone().any(CellFace::is_boundary))
+        })
+    }
+
+    /// What gradients by least squares need of the mesh; nothing where lines between centres are normal to faces.
+    #[inline]
+    pub fn least_squares(&self) -> &LeastSquares {
+        &self.least_squares
     }
 
     /// Number of cells.

@@ -9,6 +9,7 @@ pub mod convection;
 pub mod gradient;
 pub mod grid;
 pub mod krylov;
+pub mod least_squares;
 pub mod matrix;
 pub mod operators;
 pub mod preconditioner;

@@ -47,6 +47,18 @@ struct Block {
     upper_start: Vec<u32>,
     upper: Vec<f64>,
     upper_column: Vec<u32>,
+    /// Where `pairs` begins for each entry of `lower`; one more.
+    pair_start: Vec<u32>,
+    /// What is subtracted while an entry of `lower` is eliminated: from what, which entry of `upper` in the pivot's row.
+    pairs: Vec<(Target, u32)>,
+}
+
+/// An entry of the row that is eliminated.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    Lower(u32),
+    Diagonal,
+    Upper(u32),
 }
 
 impl Block {
@@ -73,7 +85,38 @@ impl Block {
         }
         block.lower.resize(block.lower_column.len(), 0.0);
         block.upper.resize(block.upper_column.len(), 0.0);
+        block.find_pairs();
         block
+    }
+
+    /// Where the rows of pivots meet entries of the rows that they are subtracted from; there is no fill elsewhere.
+    fn find_pairs(&mut self) {
+        self.pair_start.push(0);
+        for cell in 0..self.inverse.len() {
+            let (lower, upper) = (self.lower_range(cell), self.upper_range(cell));
+            for k in lower.clone() {
+                let pivot = self.lower_column[k] as usize;
+                for from in self.upper_range(pivot) {
+                    let column = self.upper_column[from];
+                    let within = |columns: &[u32], first: usize| {
+                        let at = columns.binary_search(&column).ok()?;
+                        Some((first + at) as u32)
+                    };
+                    let target = if column as usize == cell {
+                        Some(Target::Diagonal)
+                    } else if (column as usize) < cell {
+                        let found = within(&self.lower_column[lower.clone()], lower.start);
+                        found.map(Target::Lower)
+                    } else {
+                        let found = within(&self.upper_column[upper.clone()], upper.start);
+                        found.map(Target::Upper)
+                    };
+                    self.pairs
+                        .extend(target.map(|target| (target, from as u32)));
+                }
+                self.pair_start.push(self.pairs.len() as u32);
+            }
+        }
     }
 
     #[inline]
@@ -84,30 +127,6 @@ impl Block {
     #[inline]
     fn upper_range(&self, cell: usize) -> std::ops::Range<usize> {
         self.upper_start[cell] as usize..self.upper_start[cell + 1] as usize
-    }
-
-    /// Subtracts `factor` times the upper part of row `pivot` from row `cell`, where it has
-    /// entries; what this does to the diagonal is returned.
-    #[inline]
-    fn eliminate(&mut self, cell: usize, pivot: usize, factor: f64) -> f64 {
-        let mut on_diagonal = 0.0;
-        for k in self.upper_range(pivot) {
-            let column = self.upper_column[k];
-            let change = factor * self.upper[k];
-            if column as usize == cell {
-                on_diagonal = change;
-                continue;
-            }
-            let (lower, upper) = (self.lower_range(cell), self.upper_range(cell));
-            if (column as usize) < cell {
-                if let Ok(at) = self.lower_column[lower.clone()].binary_search(&column) {
-                    self.lower[lower.start + at] -= change;
-                }
-            } else if let Ok(at) = self.upper_column[upper.clone()].binary_search(&column) {
-                self.upper[upper.start + at] -= change;
-            }
-        }
-        on_diagonal
     }
 
     fn factorise(&mut self, matrix: &Matrix) {
@@ -123,7 +142,15 @@ impl Block {
             for k in lower {
                 let pivot = self.lower_column[k] as usize;
                 let factor = self.lower[k] * self.inverse[pivot];
-                diagonal -= self.eliminate(cell, pivot, factor);
+                let pairs = self.pair_start[k] as usize..self.pair_start[k + 1] as usize;
+                for &(target, from) in &self.pairs[pairs] {
+                    let change = factor * self.upper[from as usize];
+                    match target {
+                        Target::Diagonal => diagonal -= change,
+                        Target::Lower(at) => self.lower[at as usize] -= change,
+                        Target::Upper(at) => self.upper[at as usize] -= change,
+                    }
+                }
                 self.lower[k] = factor;
             }
             self.inverse[cell] = 1.0 / diagonal;
