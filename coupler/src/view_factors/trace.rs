@@ -92,6 +92,7 @@ impl<'a> SphereGrid<'a> {
 
     /// Distance in m and index of the first sphere on a ray from a point along a unit vector, up to a
     /// distance in m; one sphere may be left out. A ray that begins inside a sphere meets it at once.
+    #[inline(always)]
     pub fn first(
         &self,
         origin: Vec3,
