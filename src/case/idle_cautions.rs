@@ -1,4 +1,4 @@
-//! What a case states without an effect, or leaves out with one that is likely not meant.
+//! What a case states without an effect or beyond what is likely meant, or leaves out with an effect that is likely not meant.
 
 use calcine_coupler::feeds::places;
 use calcine_coupler::mesh::Mesh;
@@ -10,10 +10,12 @@ use calcine_coupler::setup::{GasPatch, ParticleSetup};
 use super::in_wall;
 use super::model::{Case, ContactSpec, FeedSpec, MotionSpec};
 use super::place_error::PlaceError;
-use super::units::listed;
+use super::units::{listed, short3};
 
 /// Places in the region of a feed that are tried.
 const PLACES: usize = 1000;
+/// Coefficients of friction above this are not those of materials.
+const FRICTION: f64 = 2.0;
 /// Share of the extent of a mesh by which a wall lies within it.
 const WITHIN: f64 = 0.02;
 
@@ -25,7 +27,29 @@ pub(super) fn all(case: &Case) -> Vec<String> {
     all.extend(unused_materials(case));
     all.extend(doubled_walls(case));
     all.extend(unused_contacts(case));
+    all.extend(high_friction(case));
     all
+}
+
+/// Coefficients of friction that are likely percentages or lack a decimal point.
+fn high_friction(case: &Case) -> Vec<String> {
+    let contacts = case.contacts.iter().enumerate();
+    let stated = contacts.flat_map(|(index, one)| {
+        [
+            (index, "friction", one.friction),
+            (index, "rolling_friction", one.rolling_friction),
+        ]
+    });
+    let high = stated.filter_map(|(index, key, value)| {
+        let value = value.filter(|value| *value > FRICTION)?;
+        Some(format!(
+            "`contacts[{index}].{key}` is {}: coefficients of friction of materials are below {}; is it a percentage, or does it lack a \
+             decimal point?",
+            short3(value),
+            short3(FRICTION)
+        ))
+    });
+    high.collect()
 }
 
 /// Properties of contacts that belong to a law which is not chosen.

@@ -85,4 +85,15 @@ pub(in crate::case) mod tests {
             "{all:?}"
         );
     }
+
+    #[test]
+    fn coefficients_of_friction_beyond_those_of_materials_are_told() {
+        let told = |set: &str| {
+            let all = warned("burning-moving", &[set]);
+            all.iter().any(|one| one.contains("lack a decimal point"))
+        };
+        assert!(told("contacts[0].friction=40"));
+        assert!(told("contacts[0].rolling_friction=2.1"));
+        assert!(!told("contacts[0].friction=1.9"));
+    }
 }

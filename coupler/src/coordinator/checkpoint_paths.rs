@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn any_damage_leads_back_to_the_one_before() {
         type Harm = fn(&Path);
-        let harms: [(Harm, &str); 5] = [
+        let harms: [(Harm, &str); 6] = [
             (
                 |path| fs::write(path.join("gas/state"), "gaz 2").unwrap(),
                 "gas/state has another content than was written",
@@ -248,6 +248,14 @@ mod tests {
                     fs::write(path.join("SHA256SUMS"), format!("{first}\n")).unwrap();
                 },
                 "SHA256SUMS is cut short",
+            ),
+            (
+                |path| {
+                    let list = fs::read_to_string(path.join("SHA256SUMS")).unwrap();
+                    let (_, rest) = list.split_once('\n').unwrap();
+                    fs::write(path.join("SHA256SUMS"), rest).unwrap();
+                },
+                "SHA256SUMS does not list gas/state",
             ),
             (
                 |path| fs::remove_file(path.join("SHA256SUMS")).unwrap(),

@@ -39,17 +39,23 @@ pub(super) fn damage(folder: &Path, own: &str) -> Option<String> {
     if !list.ends_with(&format!("  {own}\n")) {
         return Some(format!("{SUMS} is cut short"));
     }
+    let mut listed = Vec::new();
     for line in list.lines() {
         let Some((expected, name)) = line.split_once("  ") else {
             return Some(format!("{SUMS} is damaged itself"));
         };
+        listed.push(Path::new(name));
         match sum(&folder.join(name), false) {
             Ok(found) if found == expected => {}
             Ok(_) => return Some(format!("{name} has another content than was written")),
             Err(error) => return Some(format!("{name} cannot be read: {error}")),
         }
     }
-    None
+    let found = files(folder, own).unwrap_or_default();
+    let other = found
+        .iter()
+        .find(|path| !listed.contains(&path.as_path()))?;
+    Some(format!("{SUMS} does not list {}", other.display()))
 }
 
 /// The files of a folder and of those in it, relative to it, in a fixed order with `own` last.
