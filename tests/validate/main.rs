@@ -23,6 +23,7 @@ mod flame;
 mod fluidised;
 #[cfg(feature = "hdf5")]
 mod fluidised_bed;
+mod heated_cavity;
 mod hopper;
 #[path = "../support/hopper.rs"]
 mod hopper_bed;
@@ -74,6 +75,7 @@ const ALL: &[(&str, fn())] = &[
     ("flame", flame::run),
     #[cfg(feature = "hdf5")]
     ("fluidised-bed", fluidised_bed::run),
+    ("heated-cavity", heated_cavity::run),
     ("hopper", hopper::run),
     ("load", load::run),
     ("moving-bed", moving_bed::run),

@@ -187,6 +187,38 @@ impl Found {
 
     /// From velocities, row after row from the floor.
     fn of(velocity: &[[f64; 3]], cells: usize, degrees: f64) -> Self {
+        let lines = Lines::of(velocity, cells, degrees, 1.0);
+        Self {
+            extremes: [
+                least(&lines.up, 1.0),
+                least(&lines.across, 1.0),
+                least(&lines.across, -1.0),
+            ],
+            stream: lines.stream,
+            profile: lines.up,
+        }
+    }
+
+    /// Extremes and stream function.
+    fn values(&self) -> [f64; 4] {
+        let [u, low, high] = self.extremes;
+        [u, low, high, self.stream]
+    }
+}
+
+/// Velocities on the lines through the middle of a rhombus at cells and both ends, places in sides, and its stream function.
+pub struct Lines {
+    /// u from the middle of the floor to that of the ceiling.
+    pub up: Vec<[f64; 2]>,
+    /// v at half of the height.
+    pub across: Vec<[f64; 2]>,
+    /// Least stream function, in the velocity's unit times a side.
+    pub stream: f64,
+}
+
+impl Lines {
+    /// From velocities, row after row from the floor, under a ceiling of a velocity.
+    pub fn of(velocity: &[[f64; 3]], cells: usize, degrees: f64, ceiling: f64) -> Self {
         let (sine, cosine) = degrees.to_radians().sin_cos();
         let middle = cells / 2;
         let cell = |i: usize, j: usize| velocity[i + cells * j];
@@ -196,16 +228,12 @@ impl Found {
             points.push([1.0, end]);
             points
         };
-        let up = line(1.0, &|j| {
+        let up = line(ceiling, &|j| {
             0.5 * (cell(middle - 1, j)[0] + cell(middle, j)[0])
         });
         let across = line(0.0, &|i| {
             0.5 * (cell(i, middle - 1)[1] + cell(i, middle)[1])
         });
-        let least = |line: &[[f64; 2]], sign: f64| {
-            let points = (0..=4000).map(|k| sign * at(line, f64::from(k) / 4000.0));
-            sign * points.fold(f64::INFINITY, f64::min)
-        };
         let mut stream = 0.0_f64;
         for i in 1..cells {
             let mut sum = 0.0;
@@ -216,18 +244,14 @@ impl Found {
                 stream = stream.min(sum);
             }
         }
-        Self {
-            extremes: [least(&up, 1.0), least(&across, 1.0), least(&across, -1.0)],
-            stream,
-            profile: up,
-        }
+        Self { up, across, stream }
     }
+}
 
-    /// Extremes and stream function.
-    fn values(&self) -> [f64; 4] {
-        let [u, low, high] = self.extremes;
-        [u, low, high, self.stream]
-    }
+/// The least value on a line; with a sign of −1 the largest.
+pub fn least(line: &[[f64; 2]], sign: f64) -> f64 {
+    let points = (0..=4000).map(|k| sign * at(line, f64::from(k) / 4000.0));
+    sign * points.fold(f64::INFINITY, f64::min)
 }
 
 /// A value between points by the cubic through the four about it.
