@@ -102,11 +102,11 @@ impl InteriorStage {
 
     /// An attempt with the gas as it is: surface, network, respond. The network takes the heat that reactions set free
     /// from the attempt before; a first attempt has none, and is done `rounds` times: that heat would leave a window
-    /// late.
+    /// late. Walls of bodies have the temperatures of these in K.
     pub fn respond(
         &mut self,
         around: &Surroundings<'_>,
-        gas_conductivity: &[f64],
+        (gas_conductivity, bodies): (&[f64], &[f64]),
         window: &Window,
         rounds: u32,
     ) -> Result<(), RunError> {
@@ -115,7 +115,7 @@ impl InteriorStage {
             cause,
         };
         for _ in 0..rounds {
-            self.conduct(around, gas_conductivity, window)
+            self.conduct(around, (gas_conductivity, bodies), window)
                 .map_err(failed)?;
             let span = window.span.process.seconds();
             let lines = &mut self.lines;
@@ -128,7 +128,7 @@ impl InteriorStage {
     fn conduct(
         &mut self,
         around: &Surroundings<'_>,
-        gas_conductivity: &[f64],
+        (gas_conductivity, bodies): (&[f64], &[f64]),
         window: &Window,
     ) -> Result<(), ParticleModelError> {
         self.network_outcome = NetworkOutcome::Settled;
@@ -138,7 +138,9 @@ impl InteriorStage {
         let span = window.span.process.seconds();
         let surroundings = NetworkSurroundings {
             gas_conductivity,
-            reservoirs: self.paths.reservoirs(window.start.process.seconds() + span),
+            reservoirs: self
+                .paths
+                .reservoirs(window.start.process.seconds() + span, bodies),
         };
         let models = &mut self.models;
         let start = models.temperature().to_vec();
@@ -174,6 +176,15 @@ impl InteriorStage {
         let reservoirs = self.network.as_ref();
         let heat = reservoirs.map_or(&[][..], |network| &network.reservoir_heat);
         (self.models.changed(), heat)
+    }
+
+    /// Bodies whose walls gave particles heat in W in the last attempt, each wall with its body.
+    pub fn heat_of_bodies(&self) -> impl Iterator<Item = (usize, f64)> {
+        let heat = self.network.iter().flat_map(|one| &one.reservoir_heat);
+        let bodies = self.paths.bodies().iter();
+        bodies
+            .zip(heat)
+            .filter_map(|(body, heat)| Some(((*body)?, *heat)))
     }
 
     /// Heat in J that something outside gave the particles in the last attempt.
