@@ -6,10 +6,11 @@
 //! m [h(T') − h(T)] = Δτ [Q_gas + Q_walls + e σ A (T_s⁴ − T'⁴)],   Q_gas = Σ_f K_f (T_c − T'),
 //!
 //! with T_c of the cell at a face f and K_f = A_f/(1/α + d_f/(ε λ)): the film of the wall, where one is stated, and half a cell of
-//! gas in series, as at a wall of a stated temperature. The gas is told K_f and T', so that no gas solver knows of bodies. T' is
-//! found by attempts: with the gas and the particles of the last one the balance is solved for the next T', accelerated. Whatever
-//! the attempts leave, the body takes exactly the heat that the gas and the network gave it.
+//! gas in series, as at a wall of a stated temperature. The gas is told K_f and T', so that no gas solver knows of bodies. In an
+//! attempt T' is that of the gas of the last one, and of the particles that go with it: bodies are nodes of the network of heat
+//! between particles. Whatever the attempts leave, the body takes exactly the heat that the gas and the network gave it.
 
+use calcine_interior::SurfaceLine;
 use calcine_numerics::Anderson;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::radiation::STEFAN_BOLTZMANN;
@@ -98,11 +99,13 @@ pub struct HeatBodies {
     conductance: Vec<Vec<f64>>,
     /// Temperatures in K at the last commit.
     committed: Vec<f64>,
-    /// Temperatures that the attempt is told, and those that its balance gives.
+    /// Temperatures that the attempt is told, and those that came of it.
     told: Vec<f64>,
     made: Vec<f64>,
-    /// Heat in W from the gas and from particles in the attempt.
-    from_gas: Vec<f64>,
+    /// Σ K_f in W/K and Σ K_f T_c in W of the gas that was seen last.
+    gives: Vec<f64>,
+    warms: Vec<f64>,
+    /// Heat in W from particles in the attempt.
     from_walls: Vec<f64>,
     acceleration: Anderson,
     balance: BodyBalance,
@@ -124,7 +127,8 @@ impl HeatBodies {
             committed: temperature.clone(),
             told: temperature.clone(),
             made: temperature,
-            from_gas: vec![0.0; count],
+            gives: vec![0.0; count],
+            warms: vec![0.0; count],
             from_walls: vec![0.0; count],
             acceleration: Anderson::default(),
             balance: BodyBalance::default(),
@@ -180,13 +184,68 @@ impl HeatBodies {
         }
     }
 
+    /// Sees the gas about which the next attempt is, by the temperatures in K of its cells.
+    pub fn look(&mut self, cell_temperature: &[f64]) {
+        for (k, faces) in self.faces.iter().enumerate() {
+            let pairs = || faces.iter().zip(&self.conductance[k]);
+            self.gives[k] = pairs().map(|(_, own)| own).sum();
+            self.warms[k] = pairs()
+                .map(|(face, own)| own * cell_temperature[face.cell])
+                .sum();
+        }
+    }
+
+    /// What a body takes from particles over its temperature, about one in K, over a span in s that ends at a process time in
+    /// s: Q = k (T − T_free), with the gas as it was seen.
+    pub fn line(&self, body: usize, kelvin: f64, [span, end]: [f64; 2]) -> SurfaceLine {
+        let own = &self.bodies[body];
+        let heat = self.warms[body] - self.gives[body] * kelvin + own.radiated(kelvin, end);
+        let stored = own.mass * own.difference(self.committed[body], kelvin) / span;
+        let conductance = own.mass * own.heat_capacity.at(kelvin) / span
+            + self.gives[body]
+            + own.radiates_more(kelvin);
+        SurfaceLine {
+            conductance,
+            temperature: kelvin + (heat - stored) / conductance,
+        }
+    }
+
+    /// The temperatures of the next attempt in K as the network has them; without one, those beside the gas alone, over a span in
+    /// s that ends at a process time in s.
+    pub fn take(&mut self, network: Option<&[f64]>, [span, end]: [f64; 2]) {
+        match network {
+            Some(kelvin) => self.made.copy_from_slice(kelvin),
+            None => {
+                for (k, body) in self.bodies.iter().enumerate() {
+                    let (told, gives) = (self.told[k], self.gives[k]);
+                    let given = self.warms[k] - gives * told;
+                    self.made[k] = body.end(self.committed[k], [given, gives], told, [span, end]);
+                }
+            }
+        }
+        self.told.copy_from_slice(&self.made);
+    }
+
+    /// The same, accelerated by the attempts of the window so far, where nothing else accelerates them; from the temperatures in
+    /// K of the last attempt.
+    pub fn accelerate(&mut self, before: &[f64]) {
+        let mut next = self.made.clone();
+        self.acceleration.accelerate(before, &mut next);
+        for (told, kelvin) in self.told.iter_mut().zip(next) {
+            // Where it is extrapolated beyond any temperature, what the attempt made stays.
+            if kelvin.is_finite() && kelvin > 0.0 {
+                *told = kelvin;
+            }
+        }
+    }
+
     /// Takes the heat from the gas, whose cells gave that of these temperatures in K, over a span in s that ends at a
-    /// process time in s, beside the heat in W from walls into particles, each wall with its body. The result is how far the
-    /// bodies are from the temperatures of the attempt, as the heat that this makes over all heat that they exchanged.
-    pub fn credit<'a>(
+    /// process time in s, beside the heat in W from walls into particles, each wall with its body. The result is what the
+    /// balances at the temperatures of the attempt leave open, as a share of all heat that bodies exchanged.
+    pub fn credit(
         &mut self,
         cell_temperature: impl Fn(usize) -> f64,
-        walls: impl Iterator<Item = (usize, f64)> + 'a,
+        walls: impl Iterator<Item = (usize, f64)>,
         [span, end]: [f64; 2],
     ) -> f64 {
         self.from_walls.fill(0.0);
@@ -195,23 +254,19 @@ impl HeatBodies {
         }
         self.balance = BodyBalance::default();
         let (mut apart, mut exchanged) = (0.0, 0.0);
-        for k in 0..self.bodies.len() {
-            let (own, kelvin) = (&self.bodies[k], self.told[k]);
-            let (mut from_gas, mut magnitude, mut gives) = (0.0, 0.0, 0.0);
+        for (k, own) in self.bodies.iter().enumerate() {
+            let (start, kelvin) = (self.committed[k], self.told[k]);
+            let (mut from_gas, mut magnitude) = (0.0, 0.0);
             for (face, conductance) in self.faces[k].iter().zip(&self.conductance[k]) {
                 let heat = conductance * (cell_temperature(face.cell) - kelvin);
                 from_gas += heat;
                 magnitude += heat.abs();
-                gives += conductance;
             }
-            self.from_gas[k] = from_gas;
             let given = from_gas + self.from_walls[k];
-            let start = self.committed[k];
-            // The next attempt, by the cells as they are.
-            self.made[k] = own.end(start, [given, gives], kelvin, [span, end]);
             let settled = own.end(start, [given, 0.0], kelvin, [span, end]);
             let stored = own.mass * own.difference(start, settled);
             let radiated = span * own.radiated(settled, end);
+            self.made[k] = settled;
             self.balance.add(&BodyBalance {
                 stored,
                 stored_magnitude: stored.abs(),
@@ -222,35 +277,15 @@ impl HeatBodies {
                 from_walls: span * self.from_walls[k],
                 from_walls_magnitude: span * self.from_walls[k].abs(),
             });
-            let rate = own.mass * own.heat_capacity.at(settled) / span;
-            apart += (rate + gives) * (self.made[k] - kelvin).abs();
+            let holds = own.mass * own.difference(start, kelvin) / span;
+            apart += (given + own.radiated(kelvin, end) - holds).abs();
             exchanged += magnitude + self.from_walls[k].abs() + radiated.abs() / span;
-            exchanged += FAINT * gives;
+            exchanged += FAINT * self.gives[k];
         }
         if exchanged > 0.0 {
             apart / exchanged
         } else {
             0.0
-        }
-    }
-
-    /// Takes what the attempt made as the temperatures of the next, accelerated.
-    pub fn advance(&mut self) {
-        let mut next = self.made.clone();
-        self.acceleration.accelerate(&self.told, &mut next);
-        for (k, kelvin) in next.into_iter().enumerate() {
-            // Where it is extrapolated beyond any temperature, what the attempt made stays.
-            let possible = kelvin.is_finite() && kelvin > 0.0;
-            self.told[k] = if possible { kelvin } else { self.made[k] };
-        }
-    }
-
-    /// Ends the attempts with the heat of the last one, over a span in s that ends at a process time in s.
-    pub fn settle(&mut self, [span, end]: [f64; 2]) {
-        for k in 0..self.bodies.len() {
-            let given = self.from_gas[k] + self.from_walls[k];
-            let kelvin = self.told[k];
-            self.made[k] = self.bodies[k].end(self.committed[k], [given, 0.0], kelvin, [span, end]);
         }
     }
 
@@ -340,18 +375,23 @@ impl HeatBody {
         })
     }
 
+    /// By how much in W/K it radiates more above a temperature in K.
+    fn radiates_more(&self, kelvin: f64) -> f64 {
+        self.radiation.as_ref().map_or(0.0, |one| {
+            4.0 * one.emissivity * STEFAN_BOLTZMANN * one.area * kelvin.powi(3)
+        })
+    }
+
     /// Temperature in K at the end of a span in s up to a process time in s: the heat Q in W is `given` at `told`, and falls
     /// by `gives` W/K above it.
     fn end(&self, start: f64, [given, gives]: [f64; 2], told: f64, [span, time]: [f64; 2]) -> f64 {
-        let loses = self.radiation.as_ref().map_or(0.0, |one| {
-            4.0 * one.emissivity * STEFAN_BOLTZMANN * one.area
-        });
         let mut kelvin = told;
         for _ in 0..NEWTON_STEPS {
             let stored = self.mass * self.difference(start, kelvin) / span;
             let heat = given - gives * (kelvin - told) + self.radiated(kelvin, time);
-            let slope =
-                self.mass * self.heat_capacity.at(kelvin) / span + gives + loses * kelvin.powi(3);
+            let slope = self.mass * self.heat_capacity.at(kelvin) / span
+                + gives
+                + self.radiates_more(kelvin);
             let step = (heat - stored) / slope;
             // A first step that leads below zero leads half the way there.
             kelvin = if kelvin + step > 0.0 {
@@ -464,17 +504,14 @@ mod tests {
         let share = conductance * span / (2e-3 * 500.0);
         for _ in 0..3 {
             begin(&mut bodies);
-            let mut attempts = 0;
-            while bodies.credit(|_| 400.0, std::iter::empty(), [span, 0.0]) > 1e-12 {
-                bodies.advance();
-                attempts += 1;
-            }
-            bodies.settle([span, 0.0]);
+            bodies.look(&[400.0]);
+            bodies.take(None, [span, 0.0]);
+            let off = bodies.credit(|_| 400.0, std::iter::empty(), [span, 0.0]);
+            assert!(off < 1e-12, "{off}");
             bodies.commit();
             // (T' − T) = share (400 − T').
             expected = (expected + share * 400.0) / (1.0 + share);
             assert!((bodies.temperature()[0] - expected).abs() < 1e-9);
-            assert_eq!(attempts, 1);
         }
     }
 
@@ -490,7 +527,6 @@ mod tests {
         // Over 1e12 s nothing is stored to speak of: e σ A (T⁴ − 1000⁴) = −(−2 W).
         let walls = || std::iter::once((0, -2.0));
         bodies.credit(|_| 400.0, walls(), [1e12, 0.0]);
-        bodies.settle([1e12, 0.0]);
         let expected = (1e12 + 2.0 / (0.5 * STEFAN_BOLTZMANN * 1e-4)).powf(0.25);
         let found = bodies.made[0];
         assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
@@ -506,7 +542,6 @@ mod tests {
         begin(&mut bodies);
         let off = bodies.credit(|_| 400.0, std::iter::once((0, 0.01)), [10.0, 0.0]);
         assert!(off > 1e-3);
-        bodies.settle([10.0, 0.0]);
         let balance = *bodies.balance();
         let stored = 2e-3 * 500.0 * (bodies.made[0] - 300.0);
         assert!((balance.stored - stored).abs() < 1e-12);

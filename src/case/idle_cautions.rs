@@ -1,5 +1,7 @@
 //! What a case states without an effect, or leaves out with one that is likely not meant.
 
+use std::collections::HashSet;
+
 use calcine_coupler::feeds::places;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
@@ -61,13 +63,15 @@ fn unused_materials(case: &Case) -> Option<String> {
     let used = |index: usize| {
         case.particles.iter().any(|one| one.material == index)
             || case.walls.iter().any(|wall| wall.material == index)
+            || case.body_materials.contains(&index)
     };
     let unused = case.materials.iter().enumerate();
     let unused: Vec<&str> = unused
         .filter(|(index, _)| !used(*index))
         .map(|(_, material)| material.name.as_str())
         .collect();
-    listed(&unused).map(|names| format!("no particles and no wall are of the material {names}"))
+    listed(&unused)
+        .map(|names| format!("no particles, no wall and no body are of the material {names}"))
 }
 
 /// Walls in one place, whose contacts count twice.
@@ -112,8 +116,12 @@ fn wall_temperatures(case: &Case) -> Option<String> {
     let stated = case.wall_temperatures.iter().position(Option::is_some)?;
     let alone = !case.laws.conducts() && case.laws.radiation.is_none();
     alone.then(|| {
+        let key = match case.wall_bodies[stated] {
+            Some(_) => "body",
+            None => "temperature",
+        };
         format!(
-            "`temperature` of the wall `{}` has no effect: `laws.conduction` and `laws.radiation` are \"none\"",
+            "`{key}` of the wall `{}` has no effect: `laws.conduction` and `laws.radiation` are \"none\"",
             case.walls[stated].name
         )
     })
@@ -148,15 +156,29 @@ pub(super) fn unseen_walls(case: &Case, mesh: &Mesh) -> Option<String> {
     let found = case
         .walls
         .iter()
-        .filter(|wall| within(&wall.shape) || moves(&wall.motion));
+        .filter(|wall| within(&wall.shape) && !is_of(mesh, &wall.shape) || moves(&wall.motion));
     let names: Vec<&str> = found.map(|wall| wall.name.as_str()).collect();
     listed(&names).map(|names| {
         format!(
             "the gas does not see walls within its mesh and flows through {}: they are for particles; cut them out of the mesh \
-             (`mesh.polymesh`) where the gas has to go around them",
+             (`mesh.box.cut`, `mesh.cylinder.cut` or `mesh.polymesh`) where the gas has to go around them",
             names
         )
     })
+}
+
+/// True where triangles are faces of the mesh: each has two of its points at least, as parts of polygons have.
+fn is_of(mesh: &Mesh, shape: &WallShape) -> bool {
+    let WallShape::Mesh { triangles } = shape else {
+        return false;
+    };
+    let bits = |point: &Vec3| [point.x, point.y, point.z].map(f64::to_bits);
+    let points: HashSet<[u64; 3]> = mesh.topology().points.iter().map(bits).collect();
+    let own = |corners: &[Vec3; 3]| {
+        let known = corners.iter().filter(|one| points.contains(&bits(one)));
+        known.count() >= 2
+    };
+    triangles.iter().all(own)
 }
 
 /// Regions of feeds and outlets that lie beside the mesh, or of feeds in walls.

@@ -75,6 +75,8 @@ pub struct Case {
     pub wall_bodies: Vec<Option<usize>>,
     /// Bodies that store heat, in the order of the file.
     pub bodies: Vec<HeatBody>,
+    /// Material of each.
+    pub body_materials: Vec<usize>,
     /// What of the files of walls is left out, in words.
     pub left_out_of_walls: Vec<String>,
     /// How particles that are free move.

@@ -86,6 +86,7 @@ pub fn case() -> Case {
         wall_temperatures: vec![],
         wall_bodies: vec![],
         bodies: vec![],
+        body_materials: vec![],
         left_out_of_walls: Vec::new(),
         motion: None,
         feeds: vec![],

@@ -203,7 +203,6 @@ impl ExchangeStage {
                 // What the particles say of the gas that came of their lines, beside what the lines said of it.
                 self.follow_rates(with);
                 let extrapolated = self.advance_iterate(with);
-                with.bodies.advance();
                 self.respond(with, window)?;
                 off = larger(larger(off, self.tell_rates(with)), extrapolated);
             }
@@ -218,8 +217,9 @@ impl ExchangeStage {
                 return Ok((settled, misplaced, off));
             }
             if !channels {
-                with.bodies.advance();
+                let told = with.bodies.told().to_vec();
                 self.respond(with, window)?;
+                with.bodies.accelerate(&told);
             }
         }
     }
@@ -277,6 +277,9 @@ impl ExchangeStage {
         if channels {
             let seen = self.iterate.fields(gas.fields());
             meter.time(Stage::Exchange, || laws.sample_again(mapped, &seen));
+            bodies.look(seen.temperature);
+        } else {
+            bodies.look(gas.fields().temperature);
         }
         let around = Surroundings {
             temperature: if channels {
@@ -296,7 +299,7 @@ impl ExchangeStage {
         let first = window.attempt == 0 && interior.has_reactions() && interior.has_network();
         let conductivity = &laws.coefficients.gas_conductivity;
         meter.time(Stage::Interior, || {
-            let others = (&conductivity[..], bodies.told());
+            let others = (&conductivity[..], &mut **bodies);
             interior.respond(&around, others, window, 1 + u32::from(first))
         })?;
         self.exchange
@@ -364,9 +367,11 @@ impl ExchangeStage {
             &self.species.cell_heat,
         );
         let credited = |cell: usize| self.exchange.credited_temperature(cell);
-        let off = with
-            .bodies
-            .credit(credited, with.interior.heat_of_bodies(), body_span(window));
+        let off = with.bodies.credit(
+            credited,
+            with.interior.heat_of_bodies(),
+            window.process_span(),
+        );
         with.meter.stop(running);
         Ok((misplaced, off))
     }
@@ -420,7 +425,6 @@ impl ExchangeStage {
         }
         let inputs = with.inputs(window);
         self.exchange.credit_drag(&inputs, &gas, &self.received);
-        with.bodies.settle(body_span(window));
         with.meter.stop(running);
         let took: [&[f64]; 3] = [
             &self.exchange.heat,
@@ -432,12 +436,6 @@ impl ExchangeStage {
         } = with;
         meter.time(Stage::Interior, || interior.settle(took, window))
     }
-}
-
-/// Span of a window in s of process time, and its end.
-fn body_span(window: &Window) -> [f64; 2] {
-    let span = window.span.process.seconds();
-    [span, window.start.process.seconds() + span]
 }
 
 /// The gas about which particles are linearised: that of the last attempt, accelerated by the history of the window.

@@ -7,8 +7,8 @@ use super::particles::material_of;
 use crate::case::model::{ExternalSpec, MaterialSpec};
 use crate::case::table::TableReader;
 
-/// All bodies, still without the patches that are their surfaces.
-pub(super) fn bodies(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Vec<HeatBody> {
+/// All bodies, still without the patches that are their surfaces, with their materials.
+pub(super) fn bodies(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Vec<(HeatBody, usize)> {
     if !root.has("bodies") {
         return Vec::new();
     }
@@ -21,14 +21,16 @@ pub(super) fn bodies(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Vec<
         let (mass, temperature) = (table.number("mass"), table.number("temperature"));
         let radiation = radiation(table);
         table.finish();
-        Some(HeatBody {
+        let material = material?;
+        let body = HeatBody {
             name: name.clone(),
             mass: mass?,
-            heat_capacity: materials[material?].heat_capacity.clone(),
+            heat_capacity: materials[material].heat_capacity.clone(),
             temperature: temperature?,
             patches: Vec::new(),
             radiation: radiation?,
-        })
+        };
+        Some((body, material))
     };
     named.iter().filter_map(one).collect()
 }
@@ -77,8 +79,7 @@ pub(super) fn join(
     openfoam: &ExternalSpec,
 ) {
     for surface in surfaces {
-        let way = ["gas", "patch", &surface.patch.name, "wall", "heat"];
-        let Some(heat) = reader(root, &way) else {
+        let Some(heat) = wall_heat(root, &surface.patch.name) else {
             continue;
         };
         if let Some(place) = of_name(&heat, &surface.body, bodies) {
@@ -114,12 +115,9 @@ pub(super) fn join(
     }
 }
 
-/// The table at the end of a way of keys.
-fn reader<'a>(root: &TableReader<'a>, way: &[&str]) -> Option<TableReader<'a>> {
-    let (first, rest) = way.split_first()?;
-    let mut table = root.table(first)?;
-    for key in rest {
-        table = table.table(key)?;
-    }
-    Some(table)
+/// The table of the heat through a wall of the gas.
+fn wall_heat<'a>(root: &TableReader<'a>, patch: &str) -> Option<TableReader<'a>> {
+    let patches = root.table("gas")?.table("patch")?.named();
+    let own = patches.into_iter().find(|(name, _)| name == patch)?.1;
+    own.table("wall")?.table("heat")
 }

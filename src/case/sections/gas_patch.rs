@@ -344,7 +344,11 @@ fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
         "temperature" => table.schedule(kind).map(WallHeat::Temperature),
         "flux" => table.schedule(kind).map(WallHeat::Flux),
         // What the body gives comes as exchange with the cells at the wall.
-        "body" => Some(WallHeat::Adiabatic),
+        "body" => {
+            // Read as that of a surface, with all that is wrong of it.
+            table.raw("film");
+            Some(WallHeat::Adiabatic)
+        }
         _ => {
             let coefficient = table.schedule(kind);
             table.need("ambient");

@@ -94,7 +94,8 @@ pub(super) fn case(
     if let (Some(gas), Some(laws)) = (&gas, &laws) {
         gas::acts(root, &gas.setup, laws);
     }
-    let mut bodies = bodies::bodies(root, &materials);
+    let (mut bodies, body_materials): (Vec<_>, Vec<_>) =
+        bodies::bodies(root, &materials).into_iter().unzip();
     let read = walls::walls(root, &materials, mesh.as_ref(), folder, &bodies);
     let (walls, wall_bodies, left_out) = (read.walls, read.bodies, read.left_out);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
@@ -210,6 +211,7 @@ pub(super) fn case(
         wall_temperatures,
         wall_bodies,
         bodies,
+        body_materials,
         left_out_of_walls: left_out,
         motion,
         gas,
