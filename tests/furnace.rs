@@ -55,8 +55,8 @@ fn a_crucible_takes_part_alike_in_every_pairing_and_its_ledger_closes() {
         let other = burnt(&out, &["--gas", gas, "--particles", particles], &[]);
         let apart = [0, 1].map(|k| largest(&native[k], &other[k]));
         println!("{gas} {particles}: {} K, {} of lime", apart[0], apart[1]);
-        // Attempts end at 1e-6 of the heat, some milliwatt; OpenFOAM's gas constant differs by 1e-6.
-        assert!(apart[0] < 0.02 && apart[1] < 2e-4, "{apart:?}");
+        // Attempts end at 1e-6 of the heat that is exchanged.
+        assert!(apart[0] < 1e-3 && apart[1] < 1e-5, "{apart:?}");
     }
 }
 
@@ -64,11 +64,11 @@ fn a_crucible_takes_part_alike_in_every_pairing_and_its_ledger_closes() {
 fn a_run_killed_while_a_crucible_heats_up_resumes_to_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
     let settings = [
-        "time.process_step=2 s",
-        "output.series_every=2 s",
-        "time.checkpoint.every=10 s",
+        "time.process_step=4 s",
+        "output.series_every=4 s",
+        "time.checkpoint.every=20 s",
     ];
-    killed::resumes_to_the_same_bits(folder.path(), &[20, 60], |out| {
+    killed::resumes_to_the_same_bits(folder.path(), &[10, 30], |out| {
         program::command(&crucible(), out, &[], &settings)
     });
 }
@@ -76,7 +76,7 @@ fn a_run_killed_while_a_crucible_heats_up_resumes_to_the_same_bits() {
 /// The crucible alone with a furnace that it sees, beside a gas without conductivity: m c dT/dt = e σ A (T_s⁴ − T⁴), by Runge
 /// and Kutta's fourth order, as a separate integration.
 fn alone(end: f64) -> f64 {
-    const RATE: f64 = 0.15 * 5.670_374_419e-8 * 3e-4 / 0.5e-3;
+    const RATE: f64 = 0.15 * 5.670_374_419e-8 * 3e-4 / 5e-3;
     let capacity = |kelvin: f64| 133.0 + (kelvin - 300.0) / 1200.0 * 31.0;
     let slope = |time: f64, kelvin: f64| {
         let furnace = 960.0 + 2.0 * time.min(100.0);
@@ -108,6 +108,7 @@ fn a_crucible_that_only_radiates_converges_to_its_exact_course_by_first_order() 
             "laws.conduction={ law = \"none\" }",
             "laws.radiation={ law = \"none\" }",
             "gas.held=true",
+            "bodies.crucible.mass=5 g",
         ];
         let [kelvin, _] = burnt(&out, &[], &set);
         kelvin.last().unwrap() - alone(60.0)

@@ -1,9 +1,8 @@
 //! What a case states without an effect, or leaves out with one that is likely not meant.
 
-use std::collections::HashSet;
-
 use calcine_coupler::feeds::places;
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::surface::triangles;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{Cohesion, Motion, Rolling, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
@@ -70,8 +69,7 @@ fn unused_materials(case: &Case) -> Option<String> {
         .filter(|(index, _)| !used(*index))
         .map(|(_, material)| material.name.as_str())
         .collect();
-    listed(&unused)
-        .map(|names| format!("no particles, no wall and no body are of the material {names}"))
+    listed(&unused).map(|names| format!("no particles and no wall are of the material {names}"))
 }
 
 /// Walls in one place, whose contacts count twice.
@@ -167,18 +165,13 @@ pub(super) fn unseen_walls(case: &Case, mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// True where triangles are faces of the mesh: each has two of its points at least, as parts of polygons have.
+/// True where a shape is a patch of the mesh.
 fn is_of(mesh: &Mesh, shape: &WallShape) -> bool {
-    let WallShape::Mesh { triangles } = shape else {
+    let WallShape::Mesh { triangles: own } = shape else {
         return false;
     };
-    let bits = |point: &Vec3| [point.x, point.y, point.z].map(f64::to_bits);
-    let points: HashSet<[u64; 3]> = mesh.topology().points.iter().map(bits).collect();
-    let own = |corners: &[Vec3; 3]| {
-        let known = corners.iter().filter(|one| points.contains(&bits(one)));
-        known.count() >= 2
-    };
-    triangles.iter().all(own)
+    let mut patches = mesh.patches().iter();
+    patches.any(|patch| triangles(mesh, patch) == *own)
 }
 
 /// Regions of feeds and outlets that lie beside the mesh, or of feeds in walls.

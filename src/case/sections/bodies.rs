@@ -78,7 +78,13 @@ pub(super) fn join(
     walls: &[Option<usize>],
     openfoam: &ExternalSpec,
 ) {
+    let section = || root.table("bodies").filter(|_| root.has("bodies"));
     for surface in surfaces {
+        let stated = section().is_some_and(|section| section.has_named(&surface.body));
+        if stated && !bodies.iter().any(|body| body.name == surface.body) {
+            // What is wrong of it has been told.
+            continue;
+        }
         let Some(heat) = wall_heat(root, &surface.patch.name) else {
             continue;
         };
@@ -86,7 +92,7 @@ pub(super) fn join(
             bodies[place].patches.push(surface.patch.clone());
         }
     }
-    let Some(section) = root.table("bodies").filter(|_| !bodies.is_empty()) else {
+    let Some(section) = section().filter(|_| !bodies.is_empty()) else {
         return;
     };
     for (place, body) in bodies.iter().enumerate() {

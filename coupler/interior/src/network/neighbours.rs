@@ -87,7 +87,7 @@ pub struct NetworkBodies<'a> {
     /// Temperature of each body in K from which the iteration begins.
     pub start: &'a [f64],
     /// What a body takes from the network over its temperature, about a given one in K.
-    pub line: &'a dyn Fn(usize, f64) -> SurfaceLine,
+    pub line: &'a (dyn Fn(usize, f64) -> SurfaceLine + Sync),
 }
 
 impl NetworkBodies<'_> {
