@@ -409,6 +409,7 @@ fn places(
         toml::Value::Table(table) => {
             for (name, inner) in table {
                 let chosen = [
+                    "bodies",
                     "materials",
                     "solids",
                     "gas.patch",

@@ -25,6 +25,7 @@ mod external_particles;
 mod films;
 mod findings;
 mod frank_kamenetskii;
+mod furnace;
 mod guarded;
 mod heat_paths;
 mod heated_column;

@@ -214,6 +214,12 @@ impl Exchange {
         share(misplaced, exchanged.max(faint))
     }
 
+    /// The temperature in K at which a cell gave what the gas reports of the heat of its attempt; right after
+    /// [`Exchange::credit_heat`].
+    pub fn credited_temperature(&self, cell: usize) -> f64 {
+        self.cell_vector[cell].x
+    }
+
     /// Gives each particle the drag that the gas reports.
     pub fn credit_drag(
         &mut self,

@@ -109,6 +109,9 @@ pub struct Ledger {
     /// The heat in J that something outside gave particles of a prescribed temperature (docs/theory.md, BND-1): no error, but
     /// a term of `energy`, of whose throughput it is a share. `drift` is its sum. `None` where no temperature is prescribed.
     pub prescribed_heat: Option<BalanceLine>,
+    /// What bodies that store heat hold, in J, against what gas, particles and surroundings gave them (docs/theory.md, BOD-1).
+    /// `None` where there is none.
+    pub body_energy: Option<BalanceLine>,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: BalanceLine,
     /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (docs/theory.md, TSM-8), in N s: no
@@ -142,6 +145,7 @@ impl Ledger {
             ("particle_mass", "kg", self.particle_mass),
             ("particle_momentum", "N s", self.particle_momentum),
         ];
+        lines.extend(self.body_energy.map(|line| ("body_energy", "J", line)));
         lines.extend(self.drag_carry.map(|line| (DRAG_CARRY, "N s", line)));
         lines.extend(
             self.prescribed_heat
@@ -176,6 +180,7 @@ impl Ledger {
         lines.extend(self.elements.iter_mut().map(|(_, line)| line));
         lines.extend(self.drag_carry.as_mut());
         lines.extend(self.prescribed_heat.as_mut());
+        lines.extend(self.body_energy.as_mut());
         lines
     }
 

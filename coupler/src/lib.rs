@@ -1,6 +1,7 @@
 //! The coordinator of Calcine: three parts, two clocks, one loop.
 
 pub mod bed_eddies;
+pub mod bodies;
 pub mod boundary_value;
 pub mod checkpoint;
 pub mod closures;

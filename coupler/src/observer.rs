@@ -6,6 +6,7 @@ use std::time::Duration;
 use calcine_physics::Vec3;
 use thiserror::Error;
 
+use crate::bodies::HeatBodies;
 use crate::exchange::ExchangeConvergence;
 use crate::findings::Finding;
 use crate::ledger::Ledger;
@@ -84,6 +85,8 @@ pub struct CommittedState<'a> {
     pub models: &'a ParticleModels,
     /// What else the particles had of the gas.
     pub particle_gas: ParticleGasExchange<'a>,
+    /// Bodies that store heat.
+    pub bodies: &'a HeatBodies,
     /// Names of walls and surroundings that give heat to the particles.
     pub reservoirs: &'a [String],
     /// Mean heat from each of these into the particles over the window in W; empty where there is none.

@@ -22,6 +22,8 @@ pub struct HeatWall {
     pub shape: WallShape,
     /// Its temperature in K over process time in s; `None` for an adiabatic wall, which is a mirror.
     pub temperature: Option<Schedule>,
+    /// The body that it is of, by its place, whose temperature it has in place of that.
+    pub body: Option<usize>,
     /// Its emissivity.
     pub emissivity: f64,
 }
@@ -52,6 +54,8 @@ pub struct Paths {
     periodicity: Periodicity,
     mirrors: Vec<RadiationWall>,
     names: Vec<String>,
+    /// The body that each reservoir is of.
+    bodies: Vec<Option<usize>>,
     /// Process time in s at which views were found last.
     seen_at: Option<f64>,
     /// Temperatures of the reservoirs in K.
@@ -62,7 +66,7 @@ impl Paths {
     /// Walls that have a temperature are the first reservoirs, in their order; the surroundings are the last.
     pub fn new(setup: PathsSetup, periodicity: Periodicity) -> Self {
         let mut reservoirs = 0..;
-        let warm = setup.walls.iter().filter(|wall| wall.temperature.is_some());
+        let warm = || setup.walls.iter().filter(|wall| wall.temperature.is_some());
         let beyond = setup.surroundings.as_ref();
         let mirror = |wall: &HeatWall| RadiationWall {
             surface: WallSurface::new(&wall.shape),
@@ -74,7 +78,11 @@ impl Paths {
         };
         Self {
             mirrors: setup.walls.iter().map(mirror).collect(),
-            names: warm
+            bodies: warm()
+                .map(|wall| wall.body)
+                .chain(beyond.map(|_| None))
+                .collect(),
+            names: warm()
                 .map(|wall| wall.name.clone())
                 .chain(beyond.map(|_| SURROUNDINGS.to_owned()))
                 .collect(),
@@ -88,6 +96,11 @@ impl Paths {
     /// Names of the reservoirs.
     pub fn names(&self) -> &[String] {
         &self.names
+    }
+
+    /// The body that each reservoir is of, by its place; `None` of those with a temperature of their own.
+    pub fn bodies(&self) -> &[Option<usize>] {
+        &self.bodies
     }
 
     /// Process time in s at which the views that hold were found; `None` before.
@@ -106,8 +119,8 @@ impl Paths {
             .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9))
     }
 
-    /// Temperatures of the reservoirs in K at a process time in s.
-    pub fn reservoirs(&mut self, time: f64) -> &[f64] {
+    /// Temperatures of the reservoirs in K at a process time in s, with bodies of these temperatures in K.
+    pub fn reservoirs(&mut self, time: f64, bodies: &[f64]) -> &[f64] {
         let walls = self.setup.walls.iter();
         let schedules = walls.filter_map(|wall| wall.temperature.as_ref());
         self.kelvin.clear();
@@ -116,6 +129,11 @@ impl Paths {
                 .chain(&self.setup.surroundings)
                 .map(|one| one.at(time)),
         );
+        for (kelvin, body) in self.kelvin.iter_mut().zip(&self.bodies) {
+            if let Some(own) = body.and_then(|body| bodies.get(body)) {
+                *kelvin = *own;
+            }
+        }
         &self.kelvin
     }
 

@@ -112,6 +112,12 @@ pub struct Window {
 }
 
 impl Window {
+    /// Its span in s of process time, and the process time in s at its end.
+    pub fn process_span(&self) -> [f64; 2] {
+        let span = self.span.process.seconds();
+        [span, self.start.process.seconds() + span]
+    }
+
     /// The acceleration factor AF = d tau / dt of this window.
     pub fn acceleration(&self) -> f64 {
         self.span.process.seconds() / self.span.motion.seconds()

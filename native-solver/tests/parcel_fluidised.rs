@@ -202,6 +202,7 @@ impl FluidisedBed {
             }),
             models,
             network: None,
+            bodies: Default::default(),
         };
         let smoother = Smoother::new(&mesh, SmootherSettings::default()).unwrap();
         let plan = plan(results.path());

@@ -301,6 +301,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         }),
         models,
         network: None,
+        bodies: Default::default(),
     };
     let smoother = Smoother::new(&mesh, SmootherSettings::default()).unwrap();
     let mut run = CoupledRun::new(plan, mesh, smoother, closures, parts).unwrap();

@@ -10,6 +10,7 @@ mod solvers;
 
 use std::sync::Arc;
 
+use calcine_coupler::bodies::HeatBodies;
 use calcine_coupler::coordinator::{CheckpointPaths, CoupledRun, RunParts};
 use calcine_coupler::supervisor::Supervisor;
 
@@ -62,6 +63,7 @@ pub fn assemble_with(
         gas,
         models: interior::models(case, prepared, &particles.fields(), models)?,
         network: interior::network(case),
+        bodies: HeatBodies::new(case.bodies.clone(), &prepared.mesh),
         particles,
     };
     let smoother = prepared::smoother(case, prepared)?;

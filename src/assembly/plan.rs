@@ -104,10 +104,12 @@ fn paths(case: &Case, prepared: &PreparedCase) -> PathsSetup {
     let largest = radii.iter().copied().chain(fed).fold(0.0, f64::max);
     let emissivity = |material: usize| case.materials[material].emissivity.unwrap_or(1.0);
     let walls = case.walls.iter().zip(&case.wall_temperatures);
+    let walls = walls.zip(&case.wall_bodies);
     let radiation = case.laws.radiation.as_ref();
     PathsSetup {
         walls: walls
-            .map(|(wall, temperature)| HeatWall {
+            .map(|((wall, temperature), body)| HeatWall {
+                body: *body,
                 name: wall.name.clone(),
                 shape: wall.shape.clone(),
                 temperature: temperature.clone(),

@@ -62,7 +62,8 @@ pub(super) fn warning(
 /// would do.
 fn remedy(case: &Case, mesh: &Mesh, share: f64, whole: f64) -> String {
     let end = case.time.end.seconds();
-    let Some(stated) = case.time.process_step else {
+    let stated = case.time.process_step.iter().flatten();
+    let Some(stated) = stated.map(|(_, step)| *step).max() else {
         let factor = (case.time.acceleration.largest() * share).max(1.0);
         return format!("lower `time.acceleration` to {} or less", short3(factor));
     };

@@ -2,6 +2,7 @@
 
 use calcine_coupler::feeds::places;
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::surface::triangles;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{Cohesion, Motion, Rolling, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
@@ -85,6 +86,7 @@ fn unused_materials(case: &Case) -> Option<String> {
     let used = |index: usize| {
         case.particles.iter().any(|one| one.material == index)
             || case.walls.iter().any(|wall| wall.material == index)
+            || case.body_materials.contains(&index)
     };
     let unused = case.materials.iter().enumerate();
     let unused: Vec<&str> = unused
@@ -136,8 +138,12 @@ fn wall_temperatures(case: &Case) -> Option<String> {
     let stated = case.wall_temperatures.iter().position(Option::is_some)?;
     let alone = !case.laws.conducts() && case.laws.radiation.is_none();
     alone.then(|| {
+        let key = match case.wall_bodies[stated] {
+            Some(_) => "body",
+            None => "temperature",
+        };
         format!(
-            "`temperature` of the wall `{}` has no effect: `laws.conduction` and `laws.radiation` are \"none\"",
+            "`{key}` of the wall `{}` has no effect: `laws.conduction` and `laws.radiation` are \"none\"",
             case.walls[stated].name
         )
     })
@@ -172,15 +178,24 @@ pub(super) fn unseen_walls(case: &Case, mesh: &Mesh) -> Option<String> {
     let found = case
         .walls
         .iter()
-        .filter(|wall| within(&wall.shape) || moves(&wall.motion));
+        .filter(|wall| within(&wall.shape) && !is_of(mesh, &wall.shape) || moves(&wall.motion));
     let names: Vec<&str> = found.map(|wall| wall.name.as_str()).collect();
     listed(&names).map(|names| {
         format!(
             "the gas does not see walls within its mesh and flows through {}: they are for particles; cut them out of the mesh \
-             (`mesh.polymesh`) where the gas has to go around them",
+             (`mesh.box.cut`, `mesh.cylinder.cut` or `mesh.polymesh`) where the gas has to go around them",
             names
         )
     })
+}
+
+/// True where a shape is a patch of the mesh.
+fn is_of(mesh: &Mesh, shape: &WallShape) -> bool {
+    let WallShape::Mesh { triangles: own } = shape else {
+        return false;
+    };
+    let mut patches = mesh.patches().iter();
+    patches.any(|patch| triangles(mesh, patch) == *own)
 }
 
 /// Regions of feeds and outlets that lie beside the mesh, or of feeds in walls.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::mesh::cut::cut;
 use calcine_coupler::mesh::cylinder::{
     CylinderSpec, GradedBoxSpec, cylinder_mesh, graded_box_mesh,
 };
@@ -85,15 +86,17 @@ pub enum MeshingError {
     },
 }
 
-/// Generates or reads the gas mesh: graded first, then refined in its zones, then opened.
+/// Generates or reads the gas mesh: graded first, then refined in its zones, then bodies are cut out, then
+/// it is opened.
 pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
-    let (made, zones, openings) = match spec {
+    let (made, zones, bodies, openings) = match spec {
         MeshSpec::Box {
             origin,
             size,
             cells,
             grading,
             refine,
+            cut,
             openings,
             patches,
         } => {
@@ -103,7 +106,7 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
                 cells: *cells,
                 patches: patches.clone(),
             };
-            (boxed(plain, grading)?, refine, openings)
+            (boxed(plain, grading)?, refine, cut, openings)
         }
         MeshSpec::Cylinder {
             origin,
@@ -112,6 +115,7 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
             cells,
             grading,
             refine,
+            cut,
             openings,
         } => {
             let made = cylinder_mesh(&CylinderSpec {
@@ -122,7 +126,7 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
                 along: shared(cells[1], grading)?,
                 patches: ["side", "bottom", "top"].map(String::from),
             })?;
-            (made, refine, openings)
+            (made, refine, cut, openings)
         }
         MeshSpec::PolyMesh(directory) => return Ok(polymesh::read(directory)?),
     };
@@ -130,6 +134,11 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
         made
     } else {
         refine(&made, zones)?
+    };
+    let made = if bodies.is_empty() {
+        made
+    } else {
+        cut(&made, bodies)?
     };
     if openings.is_empty() {
         return Ok(made);

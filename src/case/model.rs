@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::StockSolver;
+use calcine_coupler::bodies::HeatBody;
 use calcine_coupler::feeds::Outlet;
 use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
@@ -70,6 +71,12 @@ pub struct Case {
     pub walls: Vec<Wall>,
     /// Temperature in K of each wall that particles exchange heat with; `None`: adiabatic.
     pub wall_temperatures: Vec<Option<Schedule>>,
+    /// The body that each wall is of, by its place; such a wall has the temperature of its body at the start.
+    pub wall_bodies: Vec<Option<usize>>,
+    /// Bodies that store heat, in the order of the file.
+    pub bodies: Vec<HeatBody>,
+    /// Material of each.
+    pub body_materials: Vec<usize>,
     /// What of the files of walls is left out, in words.
     pub left_out_of_walls: Vec<String>,
     /// How particles that are free move.
@@ -115,9 +122,9 @@ pub struct Case {
 pub struct TimeSpec {
     /// End of the run, process time.
     pub end: Ticks,
-    /// Length of a coupling window in process time, where the case states that instead of the
+    /// Length of a coupling window in process time, from a process time on, where the case states that instead of the
     /// next two; they then follow from the mesh (`case::settle`).
-    pub process_step: Option<Ticks>,
+    pub process_step: Option<Vec<(Ticks, Ticks)>>,
     /// Length of a coupling window, motion time; the longest, where it follows the gas.
     pub motion_window: Ticks,
     /// Between which bounds it follows the gas; `None`: all windows are of one length.

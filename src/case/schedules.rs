@@ -60,6 +60,12 @@ fn times(case: &Case) -> Vec<(String, Vec<f64>)> {
             add(format!("walls.{}.temperature", wall.name), of(temperature));
         }
     }
+    for body in &case.bodies {
+        if let Some(radiation) = &body.radiation {
+            let key = format!("bodies.{}.radiation.surroundings", body.name);
+            add(key, of(&radiation.surroundings));
+        }
+    }
     for population in &case.particles {
         if let Some(temperature) = &population.prescribed_temperature {
             let key = format!("particles.{}.prescribed_temperature", population.name);

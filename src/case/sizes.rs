@@ -196,6 +196,7 @@ mod tests {
                 cells: [across, 7],
                 grading: Vec::new(),
                 refine: Vec::new(),
+                cut: Vec::new(),
                 openings: Vec::new(),
             });
             assert_eq!(estimated, made as f64, "{across} across");

@@ -19,18 +19,30 @@ const BUOYANT_NUMBER: f64 = 1.0;
 /// Chooses motion window and acceleration factor where the case states a process step: the shorter
 /// of the time in which gas at the largest inlet superficial velocity, in the smallest void fraction
 /// that the smoother allows, crosses a cell of mean size, and of what keeps N √AF Δt at 1.
-/// Never longer than the process step itself.
+/// Never longer than the process step itself. Where steps change, all windows are of the shortest motion time of any of them.
 pub fn settle(case: &mut Case, mesh: &Mesh) {
-    let Some(step) = case.time.process_step else {
+    let Some(steps) = case.time.process_step.clone() else {
         return;
     };
-    let span = motion_span(case, mesh, step.seconds());
+    let spans = steps
+        .iter()
+        .map(|(_, step)| motion_span(case, mesh, step.seconds()));
+    let span = spans.fold(f64::INFINITY, f64::min);
     // Shorter than a tick means a gas beyond any speed; one window a step is then as good.
     let chosen = Ticks::from_seconds(span)
         .ok()
         .filter(|&span| span > Ticks::ZERO);
-    let motion = chosen.unwrap_or(step);
-    if let Ok(acceleration) = Acceleration::constant((step.seconds() / motion.seconds()).max(1.0)) {
+    let shortest = steps.iter().map(|(_, step)| *step).min();
+    let Some(motion) = chosen.or(shortest) else {
+        return;
+    };
+    let factor = |step: Ticks| (step.seconds() / motion.seconds()).max(1.0);
+    // What is not in a list holds from the start.
+    let from = |time: Ticks| if steps.len() > 1 { time } else { Ticks::ZERO };
+    let factors = steps
+        .iter()
+        .map(|(time, step)| (from(*time), factor(*step)));
+    if let Ok(acceleration) = Acceleration::schedule(factors.collect()) {
         case.time.motion_window = motion;
         case.time.acceleration = acceleration;
     }

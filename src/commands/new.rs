@@ -81,6 +81,8 @@ shipped! {
     IronStack "iron-stack" "Conduction and radiation in a stack of iron spheres.";
     DriSelfHeating "dri-self-heating" "Direct-reduced iron that heats itself in a container.";
     ShaftFurnace "shaft-furnace" "A counter-current shaft furnace with burners.";
+    TgFurnace "tg-furnace" "Calcium carbonate in the crucible of a thermogravimetric furnace." "tg-heap.csv";
+    TgHeap "tg-heap" "Grains of calcium carbonate poured into that crucible.";
     TgLaws "tg-laws" "Tuning: kinetic laws compared on thermogravimetry at several heating rates." "tg-laws.csv";
     TgTuning "tg-tuning" "Tuning: a lumped model of a sample in a crucible." "tg-tuning.csv";
     GranulationPlant "granulation-plant" "Plant: spray granulation with two screens, a mill and a recycle.";

@@ -123,6 +123,13 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
             let own = warm.filter(|(name, _)| belongs(name, wall));
             own.map(|(_, heat)| heat).sum()
         }
+        Measure::Body { body } => {
+            let bodies = moment.bodies;
+            let own = bodies.names().zip(bodies.temperature());
+            own.filter(|(name, _)| name == body)
+                .map(|(_, kelvin)| kelvin)
+                .sum()
+        }
         Measure::Particle { field, number } => number
             .checked_sub(1)
             .and_then(|place| {

@@ -23,9 +23,11 @@ const fn whole(name: &'static str) -> Compared {
 
 /// Shortened: the furnace as far as two of the means over 240 s that its pressure drop is compared by, of 3400 s; it goes on to
 /// 600 s in `shaft-flames`.
-const CASES: [Compared; 13] = [
+const CASES: [Compared; 15] = [
     whole("lime-burning"),
     whole("calcining-stone"),
+    whole("tg-furnace"),
+    whole("tg-heap"),
     whole("ore-reduction"),
     whole("dri-self-heating"),
     whole("purged-bed"),

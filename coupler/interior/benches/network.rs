@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use calcine_interior::{
-    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkOutcome,
+    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkBodies, NetworkOutcome,
     NetworkSurroundings, RowImbalance, ThermalProperties,
 };
 use calcine_physics::conduction::{BatchelorObrien, Conductivity, Stiffness};
@@ -89,6 +89,7 @@ fn main() {
             let surroundings = NetworkSurroundings {
                 gas_conductivity: &gas,
                 reservoirs: &[],
+                bodies: NetworkBodies::NONE,
             };
             let mut best = f64::INFINITY;
             for _ in 0..if quick { 1 } else { 3 } {

@@ -16,8 +16,8 @@ pub use model::{
     Tally, Transfer,
 };
 pub use network::{
-    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours, NetworkOutcome,
-    NetworkSurroundings, RowImbalance, ThermalProperties,
+    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours, NetworkBodies,
+    NetworkOutcome, NetworkSurroundings, RowImbalance, ThermalProperties,
 };
 pub use prescribed::PrescribedTemperature;
 pub use radial::Radial;

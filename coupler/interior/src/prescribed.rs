@@ -142,7 +142,7 @@ impl ParticleModel for PrescribedTemperature {
 mod tests {
     use super::*;
     use crate::network::{
-        HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkSurroundings, plain,
+        HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkBodies, NetworkSurroundings, plain,
     };
     use crate::thin::TEMPERATURE;
     use calcine_physics::conduction::{BatchelorObrien, ContactArea, NoGap};
@@ -236,6 +236,7 @@ mod tests {
         let beside = NetworkSurroundings {
             gas_conductivity: &[0.0; 2],
             reservoirs: &[],
+            bodies: NetworkBodies::NONE,
         };
         let gas = around(&[300.0], &[0.0], 1.0);
         let solved = network.solve(&[300.0, 300.0], &beside, |_, lines| {

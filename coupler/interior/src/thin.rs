@@ -218,7 +218,7 @@ mod tests {
     use super::*;
     use crate::network::NetworkOutcome;
     use crate::network::{
-        HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkSurroundings, plain,
+        HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkBodies, NetworkSurroundings, plain,
     };
     use calcine_physics::conduction::BatchelorObrien;
     use calcine_physics::film::{FilmTemperature, FilmTheory, StefanFlow};
@@ -364,6 +364,7 @@ mod tests {
         let beside = NetworkSurroundings {
             gas_conductivity: &[0.026; 2],
             reservoirs: &[],
+            bodies: NetworkBodies::NONE,
         };
         // exp(−G t (1/C₁ + 1/C₂)), G = 5e-3: 1000 implicit steps of 0.1 s are within 1e-3 of it.
         for _ in 0..1000 {

@@ -7,6 +7,7 @@ use calcine_physics::thermo::Element;
 
 use super::exchange::ExchangeStage;
 use super::particles::MotionStage;
+use crate::bodies::BodyBalance;
 use crate::ledger::Ledger;
 use crate::part::{CellReceived, ParticleFields};
 use crate::time::{GasStorage, Window};
@@ -19,6 +20,10 @@ pub(super) struct WindowBalances<'a> {
     pub motion: &'a MotionStage,
     /// What changed inside particles, and the heat in W from walls and surroundings into them.
     pub interior: (Inventory, &'a [f64]),
+    /// The body that each of these walls and surroundings is of.
+    pub walls_of_bodies: &'a [Option<usize>],
+    /// What bodies stored and got.
+    pub bodies: &'a BodyBalance,
     /// Heat in J that something outside gave particles.
     pub supplied: Tally,
     pub gas: &'a GasModel,
@@ -85,8 +90,15 @@ impl WindowBalances<'_> {
         } = self.exchange;
         let gas = &received.energy;
         let (changes, reservoirs) = (&self.interior.0.energy, self.interior.1);
-        let walls: f64 = reservoirs.iter().sum::<f64>() * process;
-        let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
+        // Heat from walls of bodies stays within.
+        let outside = |(k, heat): (usize, &f64)| {
+            let body = self.walls_of_bodies.get(k).is_some_and(Option::is_some);
+            (!body).then_some(*heat)
+        };
+        let walls = || reservoirs.iter().enumerate().filter_map(outside);
+        let [walls, walls_magnitude] = [walls().sum::<f64>(), walls().map(f64::abs).sum()];
+        let [walls, walls_magnitude] = [walls, walls_magnitude].map(|watt| watt * process);
+        let bodies = self.bodies;
         let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
         let weighted = |(row, value): (usize, f64)| self.particles.weight_of(row) * value;
         let total = |values: &[f64]| {
@@ -95,9 +107,10 @@ impl WindowBalances<'_> {
         };
         let each = exchange.heat.iter().map(|q| q.abs()).enumerate();
         let to_particles = (total(&exchange.heat) + total(&species.carried)) * process;
-        let exchanged = process
-            * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
-                + each.map(weighted).sum::<f64>());
+        let exchanged = bodies.from_gas_magnitude
+            + process
+                * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
+                    + each.map(weighted).sum::<f64>());
         let formed = if self.channels {
             formation(self.gas, received)
         } else {
@@ -107,17 +120,26 @@ impl WindowBalances<'_> {
             + changes.magnitude
             + walls_magnitude
             + self.supplied.magnitude
+            + bodies.stored_magnitude
+            + bodies.radiated_magnitude
             + exchanged;
         ledger.energy.book(
-            scale * (gas.open() + gas.exchange + formed) + changes.sum - walls - self.supplied.sum,
+            scale * (gas.open() + gas.exchange + formed) + changes.sum + bodies.stored
+                - walls
+                - bodies.radiated
+                - self.supplied.sum,
             magnitude,
         );
         if let Some(line) = &mut ledger.prescribed_heat {
             line.book(self.supplied.sum, magnitude);
         }
+        if let Some(line) = &mut ledger.body_energy {
+            let [open, magnitude] = bodies.open();
+            line.book(open, magnitude);
+        }
         ledger
             .energy_exchange
-            .book(to_gas + to_particles, exchanged);
+            .book(to_gas + to_particles + bodies.from_gas, exchanged);
     }
 
     fn book_momentum(&self, ledger: &mut Ledger, motion: f64) {

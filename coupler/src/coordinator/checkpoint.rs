@@ -97,6 +97,7 @@ impl CoupledRun {
         };
         self.interior.record_neighbours(&standing, &mut state);
         state.set_f64s("particle_heat", &self.exchange.exchange.heat);
+        self.bodies.record(&mut state);
         let other: Vec<f64> = self
             .motion
             .other
@@ -176,6 +177,7 @@ impl CoupledRun {
         self.plan.feeds_and_outlets.restore(&state)?;
         self.restore_particles(&state)?;
         self.exchange.exchange.heat.copy_from_slice(heat);
+        self.bodies.resume(&state)?;
         for (line, values) in self
             .ledger
             .lines_mut()

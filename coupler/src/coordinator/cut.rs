@@ -148,6 +148,7 @@ impl CoupledRun {
     pub(super) fn give_up(&mut self) {
         self.parts.gas.go_back();
         self.interior.begin_again();
+        self.bodies.begin_again();
         self.interior.models.begin_again();
     }
 

@@ -6,6 +6,7 @@ use super::error::RunError;
 use super::interior::InteriorStage;
 use super::laws::LawStage;
 use super::meter::{Meter, Stage};
+use crate::bodies::HeatBodies;
 use crate::error::{FailureKind, PartError};
 use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
 use crate::extreme::{larger, smaller};
@@ -59,6 +60,7 @@ pub(super) struct Participants<'a> {
     pub gas: &'a mut dyn Gas,
     pub interior: &'a mut InteriorStage,
     pub laws: &'a mut LawStage,
+    pub bodies: &'a mut HeatBodies,
     pub mapped: &'a MappedBed,
     /// Centres of the cells in m.
     pub centre: &'a [Vec3],
@@ -116,7 +118,7 @@ impl ExchangeStage {
             }
             self.iterate.keep(&with.gas.fields());
             self.fix_rates(with, window);
-            let misplaced = self.attempt(with, window)?;
+            let (misplaced, _) = self.attempt(with, window)?;
             // The lines may damp what the fixed rates do not; then the gas comes to where particles may do otherwise.
             let moved = self.iterate.moved(&with.gas.fields());
             tracing::debug!(window = window.index, moved, "rates fixed");
@@ -191,8 +193,8 @@ impl ExchangeStage {
         let channels = with.interior.has_channels();
         let fixes = u32::from(channels && limits.last);
         loop {
-            let misplaced = self.attempt(with, window)?;
-            let mut off = misplaced;
+            let (misplaced, bodies) = self.attempt(with, window)?;
+            let mut off = larger(misplaced, bodies);
             if channels {
                 if damped {
                     off = larger(off, self.iterate.moved(&with.gas.fields()));
@@ -215,7 +217,9 @@ impl ExchangeStage {
                 return Ok((settled, misplaced, off));
             }
             if !channels {
+                let told = with.bodies.told().to_vec();
                 self.respond(with, window)?;
+                with.bodies.accelerate(&told);
             }
         }
     }
@@ -231,6 +235,8 @@ impl ExchangeStage {
             .clone_from(&with.laws.eddies.exchange);
         let span = window.span.motion.seconds();
         self.exchange.repay(with.owed, span);
+        let gas = &with.laws.closures.gas;
+        with.bodies.begin(&with.gas.fields(), gas, &with.mapped.bed);
         if with.interior.has_channels() {
             let channels = with.interior.models.channels();
             let units = channels.iter().flat_map(|channel| &channel.mass);
@@ -261,6 +267,7 @@ impl ExchangeStage {
             gas,
             interior,
             laws,
+            bodies,
             mapped,
             particles,
             meter,
@@ -270,6 +277,9 @@ impl ExchangeStage {
         if channels {
             let seen = self.iterate.fields(gas.fields());
             meter.time(Stage::Exchange, || laws.sample_again(mapped, &seen));
+            bodies.look(seen.temperature);
+        } else {
+            bodies.look(gas.fields().temperature);
         }
         let around = Surroundings {
             temperature: if channels {
@@ -289,7 +299,8 @@ impl ExchangeStage {
         let first = window.attempt == 0 && interior.has_reactions() && interior.has_network();
         let conductivity = &laws.coefficients.gas_conductivity;
         meter.time(Stage::Interior, || {
-            interior.respond(&around, conductivity, window, 1 + u32::from(first))
+            let others = (&conductivity[..], &mut **bodies);
+            interior.respond(&around, others, window, 1 + u32::from(first))
         })?;
         self.exchange
             .conductance
@@ -314,17 +325,18 @@ impl ExchangeStage {
         moved
     }
 
-    /// One attempt of the gas; the share of the exchange that it left misplaced.
+    /// One attempt of the gas: the share of the exchange that it left misplaced, and how far bodies are from their balance.
     fn attempt(
         &mut self,
         with: &mut Participants<'_>,
         window: &mut Window,
-    ) -> Result<f64, RunError> {
+    ) -> Result<(f64, f64), RunError> {
         self.check_interrupts(with.supervisor, window)?;
         let running = Meter::start(Stage::Exchange);
         let inputs = with.inputs(window);
         let start = &with.interior.lines.temperature;
         self.exchange.linearise(&inputs, start);
+        with.bodies.tell(&mut self.exchange.cells);
         let gas = &with.laws.closures.gas;
         let named = (gas.species(), with.centre);
         check_told(&self.exchange.cells, &with.gas.fields(), named, window)?;
@@ -354,8 +366,14 @@ impl ExchangeStage {
             &self.received,
             &self.species.cell_heat,
         );
+        let credited = |cell: usize| self.exchange.credited_temperature(cell);
+        let off = with.bodies.credit(
+            credited,
+            with.interior.heat_of_bodies(),
+            window.process_span(),
+        );
         with.meter.stop(running);
-        Ok(misplaced)
+        Ok((misplaced, off))
     }
 
     /// Ends the attempts on a second interrupt, and on the first where the window can be begun again.

@@ -2,11 +2,12 @@
 //! with its heat the models say what they exchange with the gas.
 
 use calcine_interior::{
-    GasLines, HeatNetwork, Inventory, NetworkOutcome, NetworkSurroundings, RowImbalance,
-    Surroundings, Tally, Transfer,
+    GasLines, HeatNetwork, Inventory, NetworkBodies, NetworkOutcome, NetworkSurroundings,
+    RowImbalance, Surroundings, Tally, Transfer,
 };
 
 use super::error::RunError;
+use crate::bodies::HeatBodies;
 use crate::models::{ParticleModelError, ParticleModels, PopulationNewcomer};
 use crate::part::ParticleFields;
 use crate::paths::Paths;
@@ -102,11 +103,11 @@ impl InteriorStage {
 
     /// An attempt with the gas as it is: surface, network, respond. The network takes the heat that reactions set free
     /// from the attempt before; a first attempt has none, and is done `rounds` times: that heat would leave a window
-    /// late.
+    /// late. Bodies get their temperatures of the attempt.
     pub fn respond(
         &mut self,
         around: &Surroundings<'_>,
-        gas_conductivity: &[f64],
+        (gas_conductivity, bodies): (&[f64], &mut HeatBodies),
         window: &Window,
         rounds: u32,
     ) -> Result<(), RunError> {
@@ -115,30 +116,64 @@ impl InteriorStage {
             cause,
         };
         for _ in 0..rounds {
-            self.conduct(around, gas_conductivity, window)
+            self.conduct(around, (gas_conductivity, &mut *bodies), window)
                 .map_err(failed)?;
             let span = window.span.process.seconds();
             let lines = &mut self.lines;
             let done = self.models.respond(around, span, &self.heat, lines);
             done.map_err(failed)?;
+            self.stiffen(around);
         }
         Ok(())
+    }
+
+    /// Tells the gas of particles that the network holds at a temperature that they do not follow it as alone.
+    ///
+    /// A particle alone takes K = 1/(1/hA + 1/c) from the gas, c being what it stores over the window; its heat from the network
+    /// would stay what it is. Where the network has a conductance G to it that is large against hA + c, the next look at the
+    /// network would take back more than that, and attempts would not end: there the line gets the slope of c + G, through the
+    /// heat of the gas as it was seen.
+    fn stiffen(&mut self, around: &Surroundings<'_>) {
+        /// G/(hA + c) up to which attempts end quickly by themselves.
+        const SOFT: f64 = 0.5;
+        let Some(network) = self.network.as_ref().filter(|network| !network.is_empty()) else {
+            return;
+        };
+        for (row, stiffness) in network.stiffness.iter().enumerate() {
+            let (film, own) = (around.conductance[row], self.lines.conductance[row]);
+            let stores = film * own / (film - own);
+            if !(own < film && *stiffness > SOFT * (film + stores)) {
+                continue;
+            }
+            let stiff = film * (stores + stiffness) / (film + stores + stiffness);
+            let seen = around.temperature[row];
+            let apart = own / stiff * (seen - self.lines.temperature[row]);
+            self.lines.conductance[row] = stiff;
+            self.lines.temperature[row] = seen - apart;
+        }
     }
 
     fn conduct(
         &mut self,
         around: &Surroundings<'_>,
-        gas_conductivity: &[f64],
+        (gas_conductivity, bodies): (&[f64], &mut HeatBodies),
         window: &Window,
     ) -> Result<(), ParticleModelError> {
         self.network_outcome = NetworkOutcome::Settled;
+        let [span, end] = window.process_span();
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
+            bodies.take(None, [span, end]);
             return Ok(());
         };
-        let span = window.span.process.seconds();
+        let of_bodies = self.paths.bodies().to_vec();
         let surroundings = NetworkSurroundings {
             gas_conductivity,
-            reservoirs: self.paths.reservoirs(window.start.process.seconds() + span),
+            reservoirs: self.paths.reservoirs(end, bodies.told()),
+            bodies: NetworkBodies {
+                of: &of_bodies,
+                start: bodies.told(),
+                line: &|body, kelvin| bodies.line(body, kelvin, [span, end]),
+            },
         };
         let models = &mut self.models;
         let start = models.temperature().to_vec();
@@ -146,6 +181,7 @@ impl InteriorStage {
             models.surface(around, span, at, lines)
         })?;
         self.heat.copy_from_slice(&network.heat);
+        bodies.take(Some(&network.body_temperature), [span, end]);
         Ok(())
     }
 
@@ -174,6 +210,15 @@ impl InteriorStage {
         let reservoirs = self.network.as_ref();
         let heat = reservoirs.map_or(&[][..], |network| &network.reservoir_heat);
         (self.models.changed(), heat)
+    }
+
+    /// Bodies whose walls gave particles heat in W in the last attempt, each wall with its body.
+    pub fn heat_of_bodies(&self) -> impl Iterator<Item = (usize, f64)> {
+        let heat = self.network.iter().flat_map(|one| &one.reservoir_heat);
+        let bodies = self.paths.bodies().iter();
+        bodies
+            .zip(heat)
+            .filter_map(|(body, heat)| Some(((*body)?, *heat)))
     }
 
     /// Heat in J that something outside gave the particles in the last attempt.

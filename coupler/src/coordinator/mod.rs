@@ -54,6 +54,7 @@ use meter::{Meter, Stage};
 use particles::{MotionInputs, MotionStage};
 use repeat::{RepeatableGas, WindowCut};
 
+use crate::bodies::HeatBodies;
 use crate::closures::Closures;
 use crate::error::{FailureKind, PartError};
 use crate::exchange::ExchangeConvergence;
@@ -88,6 +89,8 @@ pub struct RunParts {
     pub models: ParticleModels,
     /// Heat between particles and to walls, a network without particles yet; `None` where there is none.
     pub network: Option<HeatNetwork>,
+    /// Bodies that store heat.
+    pub bodies: HeatBodies,
 }
 
 /// The two solvers.
@@ -116,6 +119,7 @@ pub struct CoupledRun {
     bed: BedStage,
     laws: LawStage,
     interior: InteriorStage,
+    bodies: HeatBodies,
     exchange: ExchangeStage,
     motion: MotionStage,
     ledger: Ledger,
@@ -152,6 +156,7 @@ impl CoupledRun {
             particles,
             models,
             network,
+            bodies,
         } = parts;
         let gas = RepeatableGas::new(gas);
         let parts = Solvers { gas, particles };
@@ -168,6 +173,7 @@ impl CoupledRun {
         let ledger = Ledger {
             elements: names.map(|name| (name, BalanceLine::default())).collect(),
             drag_carry: plan.window_drag.follows().then(BalanceLine::default),
+            body_energy: (!bodies.is_empty()).then(BalanceLine::default),
             prescribed_heat: models.prescribe().then(BalanceLine::default),
             ..Ledger::default()
         };
@@ -191,6 +197,7 @@ impl CoupledRun {
             bed,
             laws,
             interior,
+            bodies,
             exchange,
             motion,
             ledger,
@@ -456,6 +463,7 @@ impl CoupledRun {
             gas: &mut self.parts.gas,
             interior: &mut self.interior,
             laws: &mut self.laws,
+            bodies: &mut self.bodies,
             mapped: &self.bed.mapped,
             centre: self.mesh.cell_centre(),
             particles: self.parts.particles.fields(),
@@ -486,6 +494,8 @@ impl CoupledRun {
             exchange: &self.exchange,
             motion: &self.motion,
             interior: self.interior.changed(),
+            walls_of_bodies: self.interior.paths.bodies(),
+            bodies: self.bodies.balance(),
             supplied: self.interior.supplied(),
             gas: &self.laws.closures.gas,
             channels: self.interior.has_channels(),
@@ -497,6 +507,7 @@ impl CoupledRun {
         self.parts.gas.commit()?;
         self.judge_step(window);
         self.exchange.commit();
+        self.bodies.commit();
         self.parts.particles.commit()?;
         let particles = self.parts.particles.fields();
         if self.holds(window) {
@@ -558,6 +569,7 @@ impl CoupledRun {
                 void_fraction: &self.laws.sampled_gas.void_fraction,
                 slip: &self.laws.coefficients.slip,
             },
+            bodies: &self.bodies,
             reservoirs: self.interior.reservoirs(),
             reservoir_heat: &self.interior.reservoir_heat,
             ledger: &self.ledger,

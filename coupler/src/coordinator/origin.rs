@@ -327,6 +327,7 @@ impl CoupledRun {
             let (path, cause) = (path(), cause.to_string());
             return Err(OriginError::Inside { path, cause }.into());
         }
+        self.bodies.take_over(&origin.state)?;
         if self.plan.free.is_empty() {
             return Ok(());
         }

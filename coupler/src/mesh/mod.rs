@@ -2,6 +2,7 @@
 //! first, then each patch's; a face's normal points from owner to neighbour, or out of the domain.
 
 pub mod block;
+pub mod cut;
 pub mod cylinder;
 mod extrude;
 pub mod flat;

@@ -147,10 +147,12 @@ const PATCH_WALL_VELOCITY: &[Key] = &[
 
 #[rustfmt::skip]
 const PATCH_WALL_HEAT: &[Key] = &[
-    key("temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature of the wall. One of `temperature`, `flux`, `coefficient`.", "\"350 K\""),
-    key("flux", Schedule(D::HEAT_FLUX, Any), OneOf, "Heat flux into the gas per area of wall. One of `temperature`, `flux`, `coefficient`.", "\"1 kW/m^2\""),
-    key("coefficient", Schedule(D::HEAT_TRANSFER, NotNegative), OneOf, "Overall coefficient between the inner face of the wall and surroundings of `ambient`. One of `temperature`, `flux`, `coefficient`.", "\"10 W/m^2/K\""),
+    key("temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature of the wall. One of `temperature`, `flux`, `coefficient`, `body`.", "\"350 K\""),
+    key("flux", Schedule(D::HEAT_FLUX, Any), OneOf, "Heat flux into the gas per area of wall. One of `temperature`, `flux`, `coefficient`, `body`.", "\"1 kW/m^2\""),
+    key("coefficient", Schedule(D::HEAT_TRANSFER, NotNegative), OneOf, "Overall coefficient between the inner face of the wall and surroundings of `ambient`. One of `temperature`, `flux`, `coefficient`, `body`.", "\"10 W/m^2/K\""),
     key("ambient", Schedule(D::TEMPERATURE, Positive), With("coefficient"), "Temperature of the surroundings.", "\"300 K\""),
+    key("body", Text, OneOf, "One of `bodies`, which stores the heat that the wall takes from the gas. One of `temperature`, `flux`, `coefficient`, `body`.", "\"crucible\""),
+    key("film", Number(D::HEAT_TRANSFER, Positive), Without("gas conducts up to the surface; with `body`"), "Coefficient of a film between the surface of the body and the gas, beside the gas of half a cell.", "\"50 W/m^2/K\""),
 ];
 
 #[rustfmt::skip]

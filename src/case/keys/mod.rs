@@ -4,6 +4,7 @@
 
 mod agreement;
 mod below;
+mod bodies;
 mod contacts;
 mod coupling;
 mod describe;

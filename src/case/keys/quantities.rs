@@ -22,6 +22,7 @@ const MEASURE: &[Key] = &[
     key("particle", Choice(words::<ParticleField>), OneOf, "The value of one particle.", "\"temperature\""),
     key("number", Whole(1, MOST), Without("none"), "Which particle, counted from 1; required with `particle`.", "10"),
     key("wall_heat", Text, OneOf, "Heat in W from a wall of a temperature, or from `surroundings`, into the particles.", "\"hot\""),
+    key("body", Text, OneOf, "Temperature of one of `bodies`.", "\"crucible\""),
     key("surface_angle", Table(MEASURE_SURFACE_ANGLE), OneOf, "Slope of the bed in a drum, in rad: the angle by which the centre of mass of all particles has turned about an axis from straight below it; a flat surface stands across the line between them.", "{ point = \"0 0 0 mm\", axis = \"0 1 0\" }"),
 ];
 
@@ -35,7 +36,7 @@ const EXPECT: &[Key] = &[
 #[rustfmt::skip]
 pub(super) const QUANTITIES: &[Key] = &[
     key("name", Text, Required, "Name; no two alike.", "\"pressure_drop\""),
-    key("measure", Table(MEASURE), Required, "Exactly one of `difference`, `gas`, `particles`, `particle`, `wall_heat` and `surface_angle`.", "{ particles = \"temperature\", statistic = \"mean\" }"),
+    key("measure", Table(MEASURE), Required, "Exactly one of `difference`, `gas`, `particles`, `particle`, `wall_heat`, `body` and `surface_angle`.", "{ particles = \"temperature\", statistic = \"mean\" }"),
     key("agree", Band, Without("not compared"), "Largest difference between pairings: a share of the value at each time, or, for what runs to zero, in the unit of the quantity.", "\"1 %\""),
     key("agree_from", Number(D::TIME, Any), Without("the start"), "Process time from which `agree` holds: before it the quantity may depend on how single particles collide.", "\"0.3 s\""),
     key("agree_over", Number(D::TIME, Positive), Without("values as they are"), "Process time over which recorded values are averaged before pairings are compared; for what fluctuates. With `agree`.", "\"1 s\""),

@@ -1,6 +1,7 @@
 //! Keys of the file, and of `time`.
 
 use super::agreement::AGREEMENT;
+use super::bodies::BODIES;
 use super::contacts::CONTACTS;
 use super::coupling::COUPLING;
 use super::external::{EXTERNAL, LIGGGHTS, OPENFOAM};
@@ -29,6 +30,7 @@ pub(super) const BED: &[Key] = &[
     key("reactions", Tables(REACTIONS), Without("none"), "Reactions in particles.", "[[reactions]]"),
     key("contacts", Tables(CONTACTS), Without("none"), "Contacts of pairs of materials.", "[[contacts]]"),
     key("walls", Tables(WALLS), Without("none"), "Walls that free particles touch, and that all particles exchange heat with.", "[[walls]]"),
+    key("bodies", Named(BODIES), Without("none"), "Bodies of one temperature that store heat, such as crucibles, by name.", "[bodies.crucible]"),
     key("motion", Table(MOTION), Without("required where particles are free"), "How free particles move; gravity is that of `gas.gravity`.", "[motion]"),
     key("gas", Table(GAS), Required, "The gas.", "[gas]"),
     key("particles", Tables(PARTICLES), Required, "Populations.", "[[particles]]"),
@@ -63,7 +65,7 @@ const WINDOW: &[Key] = &[
 const TIME: &[Key] = &[
     key("end", Number(D::TIME, Positive), Required, "End of the run.", "\"10 min\""),
     key("motion_window", Either(&Number(D::TIME, Positive), &Table(WINDOW)), OneOf, "Length of a coupling window in motion time, or bounds between which it follows the gas (docs/how-to/adaptive-windows.md). Either this or `process_step`.", "\"1 ms\""),
-    key("process_step", Number(D::TIME, Positive), OneOf, "Length of a coupling window in process time, for beds that do not move: the motion time and with it the acceleration factor follow from mesh and inlets. Either this or `motion_window`; not with `acceleration` or `accelerated` storage.", "\"0.5 s\""),
+    key("process_step", Schedule(D::TIME, Positive), OneOf, "Length of a coupling window in process time, for beds that do not move, or lengths that hold from their times on, in steps: the motion time and with it the acceleration factor follow from mesh and inlets. Either this or `motion_window`; not with `acceleration` or `accelerated` storage.", "[[\"0 s\", \"60 s\"], [\"5000 s\", \"10 s\"]]"),
     key("acceleration", Schedule(D::NONE, Any), Default("1"), "Acceleration factor AF, at least 1: process time passes AF times as fast as motion time.", "[[\"0 s\", 1], [\"5 s\", 50]]"),
     key("gas_storage", Choice(words::<GasStorage>), Default("process"), "Clock over which the gas stores mass and heat.", "\"process\""),
     key("checkpoint", Table(CHECKPOINT), Without("only on interrupt"), "When a checkpoint is written.", "{ every = \"60 s\" }"),

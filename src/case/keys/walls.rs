@@ -59,7 +59,7 @@ pub(super) const WALLS: &[Key] = &[
     key("cylinder", Table(CYLINDER), OneOf, "The inner side of an endless cylinder. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "{ point = \"0 0 0 m\", axis = \"0 0 1\", radius = \"25 mm\" }"),
     key("cone", Table(CONE), OneOf, "The inner side of the frustum of a cone. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "{ from = \"0 0 0 mm\", to = \"0 0 40 mm\", from_radius = \"5 mm\", to_radius = \"25 mm\" }"),
     key("stl", Path, OneOf, "Triangles of an STL file, ASCII or binary; both their sides are wall. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "\"wall.stl\""),
-    key("patches", Texts(0), OneOf, "The sides of the generated mesh that carry these patches, the round side of a cylinder being the circle of its diameter; of a `polymesh` the faces of these patches, as triangles. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "[\"side\", \"bottom\"]"),
+    key("patches", Texts(0), OneOf, "The sides of the generated mesh that carry these patches, the round side of a cylinder being the circle of its diameter; of a `polymesh`, and of bodies cut out of a generated mesh, the faces of these patches, as triangles. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "[\"side\", \"bottom\"]"),
     key("scale", Number(D::NONE, Positive), Default("1"), "Length in m of a unit of the STL file.", "1e-3"),
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity of the wall. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "\"0 0 0.1 m/s\""),
     key("rotating", Table(ROTATING), Without("at rest"), "The wall turns about an axis. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 3 rad/s\" }"),
@@ -67,4 +67,5 @@ pub(super) const WALLS: &[Key] = &[
     key("oscillating", Table(OSCILLATING), Without("at rest"), "The wall oscillates, as vibrated floors do; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ amplitude = \"0 0 2 mm\", period = \"50 ms\" }"),
     key("servo", Table(SERVO), Without("at rest"), "The wall is moved along a line to hold a force or a pressure, as plates that load a bed are; not in LIGGGHTS. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ direction = \"0 0 -1\", force = \"10 N\", mass = \"0.2 kg\" }"),
     key("temperature", Schedule(D::TEMPERATURE, Positive), Without("adiabatic"), "Temperature of the wall, for conduction and radiation between it and particles. A wall without it conducts nothing and reflects radiation as a mirror.", "\"400 K\""),
+    key("body", Text, Without("none"), "One of `bodies` that the wall belongs to, whose temperature it has in place of `temperature`, and which gives the heat.", "\"crucible\""),
 ];

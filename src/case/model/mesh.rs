@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use calcine_coupler::mesh::cut::Cut;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::openings::Opening;
 use calcine_coupler::mesh::refine::Refinement;
@@ -23,6 +24,8 @@ pub enum MeshSpec {
         grading: [Vec<Stretch>; 3],
         /// Zones in which cells are split.
         refine: Vec<Refinement>,
+        /// Bodies that are cut out.
+        cut: Vec<Cut>,
         /// Parts of the boundary with patches of their own.
         openings: Vec<Opening>,
         /// Patch names of x−, x+, y−, y+, z−, z+; equal names make one patch.
@@ -42,6 +45,8 @@ pub enum MeshSpec {
         grading: Vec<Stretch>,
         /// Zones in which cells are split.
         refine: Vec<Refinement>,
+        /// Bodies that are cut out.
+        cut: Vec<Cut>,
         /// Parts of the boundary with patches of their own.
         openings: Vec<Opening>,
     },

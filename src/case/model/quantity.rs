@@ -70,6 +70,11 @@ pub enum Measure {
         /// Its name.
         wall: String,
     },
+    /// Temperature in K of a body that stores heat.
+    Body {
+        /// Its name.
+        body: String,
+    },
     /// One particle, by its place in the order of ids, counted from 1.
     Particle {
         /// Field: `temperature` (K).

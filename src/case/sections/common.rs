@@ -7,13 +7,17 @@ use crate::case::table::TableReader;
 
 /// The patch names of a mesh, where the case itself knows them.
 pub(super) fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
-    let (mut names, openings): (Vec<&str>, _) = match mesh? {
+    let (mut names, openings, cut): (Vec<&str>, _, _) = match mesh? {
         MeshSpec::Box {
-            patches, openings, ..
-        } => (patches.iter().map(String::as_str).collect(), openings),
-        MeshSpec::Cylinder { openings, .. } => (vec!["bottom", "side", "top"], openings),
+            patches,
+            openings,
+            cut,
+            ..
+        } => (patches.iter().map(String::as_str).collect(), openings, cut),
+        MeshSpec::Cylinder { openings, cut, .. } => (vec!["bottom", "side", "top"], openings, cut),
         MeshSpec::PolyMesh(_) => return None,
     };
+    names.extend(cut.iter().map(|one| one.name.as_str()));
     names.extend(openings.iter().map(|one| one.name.as_str()));
     names.sort_unstable();
     names.dedup();

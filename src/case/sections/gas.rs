@@ -14,7 +14,7 @@ use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
 use super::composition::{no_species, of_gas};
-use super::gas_patch::boundary;
+use super::gas_patch::{BodySurface, boundary};
 use super::species_data;
 use super::turbulence::turbulence;
 use crate::case::model::{Laws, MeshSpec};
@@ -32,6 +32,8 @@ pub(super) struct GasRead {
     pub files: Vec<PathBuf>,
     /// What the particles of a bed make of its eddies.
     pub bed_eddies: LawChoice<dyn BedEddies>,
+    /// Patches that are surfaces of bodies.
+    pub surfaces: Vec<BodySurface>,
 }
 
 pub(super) fn read(
@@ -57,7 +59,14 @@ pub(super) fn read(
     let held = section.truth("held").unwrap_or(false);
     let turbulence = turbulence(&section);
     let turbulent = turbulence.as_ref().map(|(model, _)| !model.is_laminar());
-    let patches = boundary(&section, mesh, properties.as_ref(), turbulent);
+    let mut surfaces = Vec::new();
+    let patches = boundary(
+        &section,
+        mesh,
+        properties.as_ref(),
+        turbulent,
+        &mut surfaces,
+    );
     let controls = controls(&section);
     let around = Around {
         gas: properties.as_ref(),
@@ -106,6 +115,7 @@ pub(super) fn read(
         gravity_is_stated,
         files,
         bed_eddies,
+        surfaces,
     })
 }
 
@@ -156,6 +166,7 @@ fn vacuum(section: &TableReader<'_>) -> Option<GasRead> {
         held: true,
         gravity_is_stated,
         files: Vec::new(),
+        surfaces: Vec::new(),
         bed_eddies: LawChoice::named(&section.laws().bed_eddies, NONE, Vec::new())?,
     })
 }

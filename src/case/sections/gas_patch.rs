@@ -1,5 +1,6 @@
 //! `[gas.patch.NAME]`: boundary conditions of the gas.
 
+use calcine_coupler::bodies::BodyPatch;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
@@ -25,6 +26,7 @@ pub(super) fn boundary(
     mesh: Option<&MeshSpec>,
     gas: Option<&GasModel>,
     turbulent: Option<bool>,
+    surfaces: &mut Vec<BodySurface>,
 ) -> Option<Vec<(String, GasPatch)>> {
     section.need("patch");
     let table = section.table("patch")?;
@@ -32,6 +34,7 @@ pub(super) fn boundary(
     let mut made = Vec::new();
     let mut complete = true;
     for (name, reader) in &named {
+        surfaces.extend(surface(name, reader));
         match patch(reader, gas, turbulent) {
             Some(patch) => made.push((name.clone(), patch)),
             None => complete = false,
@@ -294,14 +297,45 @@ fn wall_velocity(table: &TableReader<'_>) -> Option<WallVelocity> {
     velocity.map(|v| WallVelocity::Moving(Vec3::from(v)))
 }
 
-/// `{ temperature = … }`, `{ flux = … }`, or `{ coefficient = …, ambient = … }`.
+/// A patch that is the surface of a body that stores heat.
+pub(super) struct BodySurface {
+    /// Name of the body.
+    pub body: String,
+    /// The patch.
+    pub patch: BodyPatch,
+}
+
+/// What a patch says of the body that it is the surface of.
+fn surface(name: &str, reader: &TableReader<'_>) -> Option<BodySurface> {
+    if !reader.is_table("wall") {
+        return None;
+    }
+    let wall = reader.table("wall")?;
+    if !wall.is_table("heat") {
+        return None;
+    }
+    let heat = wall.table("heat")?;
+    if !heat.has("body") {
+        return None;
+    }
+    let (body, film) = (heat.text("body"), heat.number("film"));
+    Some(BodySurface {
+        body: body?.to_owned(),
+        patch: BodyPatch {
+            name: name.to_owned(),
+            film,
+        },
+    })
+}
+
+/// `{ temperature = … }`, `{ flux = … }`, `{ coefficient = …, ambient = … }`, or `{ body = … }`.
 fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
-    let kinds = ["temperature", "flux", "coefficient"];
+    let kinds = ["temperature", "flux", "coefficient", "body"];
     let mut given = kinds.iter().copied().filter(|kind| table.has(kind));
     let (kind, more) = (given.next(), given.next());
     let (Some(kind), None) = (kind, more) else {
         table.fail_whole(
-            "needs exactly one of temperature, flux, and coefficient with ambient",
+            "needs exactly one of temperature, flux, body, and coefficient with ambient",
             "for example { coefficient = \"10 W/m^2/K\", ambient = \"300 K\" }",
         );
         return None;
@@ -309,6 +343,12 @@ fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
     match kind {
         "temperature" => table.schedule(kind).map(WallHeat::Temperature),
         "flux" => table.schedule(kind).map(WallHeat::Flux),
+        // What the body gives comes as exchange with the cells at the wall.
+        "body" => {
+            // Read as that of a surface, with all that is wrong of it.
+            table.raw("film");
+            Some(WallHeat::Adiabatic)
+        }
         _ => {
             let coefficient = table.schedule(kind);
             table.need("ambient");

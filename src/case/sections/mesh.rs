@@ -7,7 +7,7 @@ use calcine_coupler::physics::Vec3;
 use toml_edit::Value;
 
 use super::common::existing;
-use super::zone::{openings, refinements};
+use super::zone::{cuts, openings, refinements};
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
 
@@ -36,7 +36,9 @@ fn cylinder(section: &TableReader<'_>) -> Option<MeshSpec> {
     let cells = cylinder.wholes::<2>("cells");
     let grading = gradings(&cylinder, ["z"], cells.map(|cells| [cells[1]]));
     let refine = refinements(&cylinder);
-    let openings = openings(&cylinder, &["side", "bottom", "top"].map(String::from));
+    let sides = ["side", "bottom", "top"].map(String::from);
+    let cut = cuts(&cylinder, &sides);
+    let openings = openings(&cylinder, &sides);
     cylinder.finish();
     let (diameter, length, cells, [grading]) = (diameter?, length?, cells?, grading?);
     if !(3..=20_000).contains(&cells[0])
@@ -53,6 +55,7 @@ fn cylinder(section: &TableReader<'_>) -> Option<MeshSpec> {
         cells,
         grading,
         refine,
+        cut,
         openings,
     })
 }
@@ -94,7 +97,8 @@ fn cuboid(section: &TableReader<'_>) -> Option<MeshSpec> {
             six
         }
     };
-    let openings = openings(&cuboid, patches.as_ref().map_or(&[][..], |six| &six[..]));
+    let sides = patches.as_ref().map_or(&[][..], |six| &six[..]);
+    let (cut, openings) = (cuts(&cuboid, sides), openings(&cuboid, sides));
     cuboid.finish();
     let (size, cells, grading, patches) = (size?, cells?, grading?, patches?);
     if size.iter().any(|&length| length <= 0.0) {
@@ -119,6 +123,7 @@ fn cuboid(section: &TableReader<'_>) -> Option<MeshSpec> {
         cells,
         grading,
         refine,
+        cut,
         openings,
         patches,
     })

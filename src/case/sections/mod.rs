@@ -1,6 +1,7 @@
 //! The sections of a case file, one file each.
 
 mod agreement;
+mod bodies;
 mod chemistry;
 mod common;
 mod composition;
@@ -93,11 +94,16 @@ pub(super) fn case(
     if let (Some(gas), Some(laws)) = (&gas, &laws) {
         gas::acts(root, &gas.setup, laws);
     }
-    let (walls, left_out) = walls::walls(root, &materials, mesh.as_ref(), folder);
+    let (mut bodies, body_materials): (Vec<_>, Vec<_>) =
+        bodies::bodies(root, &materials).into_iter().unzip();
+    let read = walls::walls(root, &materials, mesh.as_ref(), folder, &bodies);
+    let (walls, wall_bodies, left_out) = (read.walls, read.bodies, read.left_out);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
+    let surfaces = gas.as_ref().map_or(&[][..], |gas| &gas.surfaces);
+    bodies::join(root, &mut bodies, surfaces, &wall_bodies, &openfoam);
     let (external_gas, external_particles) = coupling::programs(root, folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
@@ -132,6 +138,7 @@ pub(super) fn case(
             populations: particles.as_deref(),
             probes: &probes,
             walls: &walls,
+            bodies: &bodies,
             species: species.unwrap_or_default(),
             solids: reactions::are_all(root, &chemistry.reactions).then_some(&chemistry.solids[..]),
             gravity: gas.as_ref().map(|gas| gas.setup.gravity),
@@ -181,6 +188,7 @@ pub(super) fn case(
         gravity_is_stated,
         files: gas_files,
         bed_eddies: _,
+        surfaces: _,
     } = gas?;
     let laws = laws?;
     gas.momentum = laws.momentum;
@@ -201,6 +209,9 @@ pub(super) fn case(
         contacts,
         walls,
         wall_temperatures,
+        wall_bodies,
+        bodies,
+        body_materials,
         left_out_of_walls: left_out,
         motion,
         gas,

@@ -1,9 +1,11 @@
 //! `[[quantities]]`.
 
+use calcine_coupler::bodies::HeatBody;
 use calcine_coupler::motion::Wall;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
+use super::bodies::of_name;
 use super::common::name_in_results;
 use super::common::patches;
 use super::walls::direction;
@@ -111,6 +113,7 @@ pub(super) struct Known<'a> {
     pub probes: &'a [Probe],
     /// Walls, with the temperatures of those that have one.
     pub walls: &'a [(Wall, Option<Schedule>)],
+    pub bodies: &'a [HeatBody],
     pub species: &'a [String],
     /// None where a reaction could not be read: what it would make is not known.
     pub solids: Option<&'a [SolidSpecies]>,
@@ -160,6 +163,11 @@ fn measure(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'st
         "particles" => particles(reader, known),
         "particle" => particle(reader, known),
         "wall_heat" => wall_heat(reader, known),
+        "body" => {
+            let name = reader.text("body")?;
+            of_name(reader, name, known.bodies);
+            Some((Measure::Body { body: name.into() }, "temperature"))
+        }
         _ => surface_angle(reader, known),
     }
 }

@@ -9,7 +9,7 @@ use crate::case::table::TableReader;
 pub(super) fn read(root: &TableReader<'_>) -> Option<(TimeSpec, GasStorage)> {
     let section = root.table("time")?;
     let end = ticks(&section, "end");
-    let process_step = ticks(&section, "process_step");
+    let process_step = process_steps(&section);
     let stepped = section.has("process_step");
     if !stepped {
         section.need("motion_window");
@@ -38,7 +38,10 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<(TimeSpec, GasStorage)> {
     } else {
         "motion_window"
     };
-    let motion_window = if stepped { process_step } else { motion_window };
+    let longest = process_step
+        .as_ref()
+        .and_then(|steps| steps.iter().map(|step| step.1).max());
+    let motion_window = if stepped { longest } else { motion_window };
     let (end, motion_window, acceleration) = (end?, motion_window?, acceleration?);
     if motion_window > end {
         let rule = format!("is {motion_window}, longer than the run of {end}");
@@ -79,6 +82,31 @@ fn bounds(section: &TableReader<'_>) -> Option<WindowBounds> {
         courant,
         error,
     })
+}
+
+/// Lengths of windows in process time, each from its time on.
+fn process_steps(section: &TableReader<'_>) -> Option<Vec<(Ticks, Ticks)>> {
+    const KEY: &str = "process_step";
+    let entries = section.schedule(KEY)?.0;
+    let help = "write a time, or times and the steps from them on, the first at 0 s: [[\"0 s\", \"60 s\"], [\"5000 s\", \"10 s\"]]";
+    if let (Some(first), true) = (entries.first(), entries.len() > 1)
+        && first.0 != 0.0
+    {
+        let rule = format!("begins at {} s, not at 0 s", first.0);
+        section.fail(KEY, rule, help);
+        return None;
+    }
+    let step = |(time, seconds): (f64, f64)| {
+        let at = Ticks::from_seconds(time).ok()?;
+        let step = Ticks::from_seconds(seconds).ok()?;
+        (step > Ticks::ZERO).then_some((at, step))
+    };
+    let steps: Option<Vec<_>> = entries.iter().copied().map(step).collect();
+    if steps.is_none() {
+        let rule = "has a time that the clock cannot hold";
+        section.fail(KEY, rule, "its tick is 1e-12 s, and it ends after 106 days");
+    }
+    steps
 }
 
 /// A process step stands for the motion clock as a whole.

@@ -2,16 +2,19 @@
 
 use std::path::Path;
 
-use calcine_coupler::mesh::Patch;
-use calcine_coupler::mesh::polymesh::{self, PolyMeshError};
+use calcine_coupler::bodies::HeatBody;
+use calcine_coupler::mesh::cut::Cut;
 use calcine_coupler::mesh::surface::triangles;
+use calcine_coupler::mesh::{Mesh, Patch};
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
+use super::bodies::of_name;
 use super::common::existing;
 use super::heat;
 use super::particles::material_of;
+use crate::case::meshing::{self, MeshingError};
 use crate::case::model::{MaterialSpec, MeshSpec};
 use crate::case::stl;
 use crate::case::table::TableReader;
@@ -19,13 +22,25 @@ use crate::case::table::TableReader;
 /// Most numbers of triangles that are named.
 const MOST: usize = 5;
 
-/// All walls with their temperatures, and what of their files is left out.
+/// What the section says.
+pub(super) struct WallsRead {
+    /// All walls with their temperatures; those of bodies with that of the start.
+    pub walls: Vec<(Wall, Option<Schedule>)>,
+    /// The body of each.
+    pub bodies: Vec<Option<usize>>,
+    /// What of their files is left out.
+    pub left_out: Vec<String>,
+}
+
+/// All walls.
 pub(super) fn walls(
     root: &TableReader<'_>,
     materials: &[MaterialSpec],
     mesh: Option<&MeshSpec>,
     folder: &Path,
-) -> (Vec<(Wall, Option<Schedule>)>, Vec<String>) {
+    bodies: &[HeatBody],
+) -> WallsRead {
+    let mut of_bodies = Vec::new();
     let mut all: Vec<(Wall, Option<Schedule>)> = Vec::new();
     let mut left_out = Vec::new();
     for table in root.tables("walls") {
@@ -33,7 +48,7 @@ pub(super) fn walls(
         let material = material_of(&table, materials);
         let shapes = shapes(&table, mesh, folder, &mut left_out);
         let motion = motion(&table);
-        let temperature = table.schedule("temperature");
+        let (temperature, body) = warmth(&table, bodies);
         table.finish();
         let (Some(name), Some(material), Some(shapes)) = (name, material, shapes) else {
             continue;
@@ -58,9 +73,30 @@ pub(super) fn walls(
                 motion: motion.clone(),
             };
             all.push((wall, temperature.clone()));
+            of_bodies.push(body);
         }
     }
-    (all, left_out)
+    WallsRead {
+        walls: all,
+        bodies: of_bodies,
+        left_out,
+    }
+}
+
+/// The temperature of a wall, and the body that it is of.
+fn warmth(table: &TableReader<'_>, bodies: &[HeatBody]) -> (Option<Schedule>, Option<usize>) {
+    let temperature = table.schedule("temperature");
+    if !table.has("body") {
+        return (temperature, None);
+    }
+    if table.has("temperature") {
+        let help = "remove one of the two: the wall has the temperature of its body";
+        table.fail("temperature", "stands beside `body`", help);
+    }
+    let name = table.text("body");
+    let body = name.and_then(|name| of_name(table, name, bodies));
+    let start = body.map(|body| Schedule::constant(bodies[body].temperature));
+    (start, body)
 }
 
 /// What is left out of a file: the first numbers of its triangles without area.
@@ -170,7 +206,8 @@ fn cone(table: &TableReader<'_>) -> Option<WallShape> {
     Some(WallShape::Cone { ends, radii })
 }
 
-/// The parts of the mesh's boundary that carry one of the named patches: sides of a generated mesh, triangles of a mesh of files.
+/// The parts of the mesh's boundary that carry one of the named patches: sides of a generated mesh, triangles of bodies
+/// that are cut out of it and of a mesh of files.
 fn of_mesh(table: &TableReader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(String, WallShape)>> {
     let wanted = table.texts("patches")?;
     if wanted.is_empty() {
@@ -212,13 +249,14 @@ fn of_mesh(table: &TableReader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(Stri
 
 /// Patch, name and shape of each side of a generated mesh, the round side of a cylinder is the circle of its diameter; patches of
 /// a mesh of files.
-fn parts(mesh: &MeshSpec) -> Result<Vec<(String, String, WallShape)>, PolyMeshError> {
+fn parts(mesh: &MeshSpec) -> Result<Vec<(String, String, WallShape)>, MeshingError> {
     let plane = |point: Vec3, normal: Vec3| WallShape::Plane { point, normal };
     match mesh {
         MeshSpec::Box {
             origin,
             size,
             patches,
+            cut,
             ..
         } => {
             let names = ["x-", "x+", "y-", "y+", "z-", "z+"];
@@ -233,12 +271,15 @@ fn parts(mesh: &MeshSpec) -> Result<Vec<(String, String, WallShape)>, PolyMeshEr
                 let name = names[index].to_owned();
                 (patches[index].clone(), name, plane(corner, inward))
             };
-            Ok((0..6).map(side).collect())
+            let mut all: Vec<_> = (0..6).map(side).collect();
+            all.extend(of_bodies(mesh, cut)?);
+            Ok(all)
         }
         MeshSpec::Cylinder {
             origin,
             diameter,
             length,
+            cut,
             ..
         } => {
             let round = WallShape::Cylinder {
@@ -253,18 +294,37 @@ fn parts(mesh: &MeshSpec) -> Result<Vec<(String, String, WallShape)>, PolyMeshEr
                 ("top", plane(top, -Vec3::z())),
             ];
             let named = sides.map(|(name, shape)| (name.to_owned(), name.to_owned(), shape));
-            Ok(named.into())
+            let mut all = Vec::from(named);
+            all.extend(of_bodies(mesh, cut)?);
+            Ok(all)
         }
-        MeshSpec::PolyMesh(folder) => {
-            let mesh = polymesh::read(folder)?;
-            let part = |patch: &Patch| {
-                let triangles = triangles(&mesh, patch);
-                let name = patch.name.clone();
-                (name.clone(), name, WallShape::Mesh { triangles })
-            };
-            Ok(mesh.patches().iter().map(part).collect())
+        MeshSpec::PolyMesh(_) => {
+            let mesh = meshing::mesh(mesh)?;
+            let patches = mesh.patches().iter();
+            Ok(patches.map(|patch| part_of(&mesh, patch)).collect())
         }
     }
+}
+
+/// The surfaces of bodies that are cut out of a generated mesh.
+fn of_bodies(
+    spec: &MeshSpec,
+    cut: &[Cut],
+) -> Result<Vec<(String, String, WallShape)>, MeshingError> {
+    if cut.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mesh = meshing::mesh(spec)?;
+    let own = |patch: &&Patch| cut.iter().any(|body| body.name == patch.name);
+    let patches = mesh.patches().iter().filter(own);
+    Ok(patches.map(|patch| part_of(&mesh, patch)).collect())
+}
+
+/// A patch of a mesh as triangles.
+fn part_of(mesh: &Mesh, patch: &Patch) -> (String, String, WallShape) {
+    let triangles = triangles(mesh, patch);
+    let name = patch.name.clone();
+    (name.clone(), name, WallShape::Mesh { triangles })
 }
 
 fn motion(table: &TableReader<'_>) -> WallMotion {

@@ -1,5 +1,6 @@
 //! Parts of space: zones of a mesh that are refined, or excluded from the smoother.
 
+use calcine_coupler::mesh::cut::Cut;
 use calcine_coupler::mesh::openings::Opening;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
@@ -77,13 +78,44 @@ pub(super) fn openings(mesh: &TableReader<'_>, sides: &[String]) -> Vec<Opening>
         let name = table.text("name");
         let zone = zone(table);
         table.finish();
-        let name = name?.to_owned();
-        if sides.contains(&name) {
-            let rule = format!("is \"{name}\", a side of the mesh");
-            table.fail("name", rule, "an opening needs a name of its own");
-            return None;
-        }
+        let name = own_name(table, name?, sides, "an opening needs a name of its own")?;
         Some(Opening { name, zone: zone? })
     };
     tables.iter().filter_map(one).collect()
+}
+
+/// The bodies that are cut out of a generated mesh, with patches beside those of its sides.
+pub(super) fn cuts(mesh: &TableReader<'_>, sides: &[String]) -> Vec<Cut> {
+    let tables = mesh.tables("cut");
+    let one = |table: &TableReader<'_>| {
+        let name = table.text("name");
+        let zone = zone(table);
+        let hollow = table.table("hollow").map(|hollow| {
+            let zone = self::zone(&hollow);
+            hollow.finish();
+            zone
+        });
+        table.finish();
+        let name = own_name(table, name?, sides, "a body needs a name of its own")?;
+        let hollow = match hollow {
+            Some(hollow) => Some(hollow?),
+            None => None,
+        };
+        Some(Cut {
+            name,
+            zone: zone?,
+            hollow,
+        })
+    };
+    tables.iter().filter_map(one).collect()
+}
+
+/// A name of a patch that no side of the mesh has.
+fn own_name(table: &TableReader<'_>, name: &str, sides: &[String], help: &str) -> Option<String> {
+    if sides.iter().any(|side| side == name) {
+        let rule = format!("is \"{name}\", a side of the mesh");
+        table.fail("name", rule, help);
+        return None;
+    }
+    Some(name.to_owned())
 }

@@ -2,14 +2,15 @@
 
 /// For a section of a case those whose values its checks use.
 const USES: &[(&str, &[&str])] = &[
-    ("gas", &["mesh", "time"]),
+    ("gas", &["mesh", "time", "bodies"]),
+    ("bodies", &["materials", "mesh", "gas", "walls"]),
     ("materials", &["solids"]),
     (
         "particles",
         &["materials", "mesh", "laws", "reactions", "solids"],
     ),
     ("feeds", &["particles"]),
-    ("walls", &["materials", "mesh", "laws"]),
+    ("walls", &["materials", "mesh", "laws", "bodies"]),
     ("contacts", &["materials", "particles", "walls", "motion"]),
     ("reactions", &["gas", "solids", "materials", "laws"]),
     ("motion", &["time", "particles"]),
@@ -24,6 +25,7 @@ const USES: &[(&str, &[&str])] = &[
             "materials",
             "particles",
             "walls",
+            "bodies",
             "reactions",
             "solids",
             "mesh",
@@ -36,7 +38,7 @@ const USES: &[(&str, &[&str])] = &[
 ];
 
 /// Sections whose entries have names: `materials.glass`.
-const NAMED: [&str; 2] = ["materials", "solids"];
+const NAMED: [&str; 3] = ["bodies", "materials", "solids"];
 
 /// True where a check at one place may have failed only because a value at another place could not be read: one of a
 /// section that the check uses, or of the same entry.

@@ -22,7 +22,8 @@ use calcine_physics::conduction::{
 use calcine_physics::radiation::conducted_share;
 
 pub use neighbours::{
-    ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkSurroundings, RowImbalance,
+    ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkBodies, NetworkSurroundings,
+    RowImbalance,
 };
 use radiation::Radiation;
 use solver::{NetworkSolver, NetworkSystem};
@@ -99,6 +100,10 @@ pub struct HeatNetwork {
     pub heat: Vec<f64>,
     /// Heat from each reservoir into the particles in W.
     pub reservoir_heat: Vec<f64>,
+    /// Temperature of each body in K.
+    pub body_temperature: Vec<f64>,
+    /// Conductance in W/K that the network adds to each surface, all else staying as warm as it is.
+    pub stiffness: Vec<f64>,
     work: Work,
 }
 
@@ -112,6 +117,8 @@ struct Work {
     bonds: Vec<([usize; 2], f64)>,
     /// Node and reservoir with their conductance in W/K; contacts first.
     reservoir_links: Vec<([usize; 2], f64)>,
+    /// Temperatures of the reservoirs in K, of those that are parts of bodies that of the last iterate.
+    reservoirs: Vec<f64>,
     capacity: Vec<f64>,
     old: Vec<f64>,
     sink_conductance: Vec<f64>,
@@ -154,6 +161,8 @@ impl HeatNetwork {
             laws,
             heat: Vec::new(),
             reservoir_heat: Vec::new(),
+            body_temperature: Vec::new(),
+            stiffness: Vec::new(),
             materials,
             material: Vec::new(),
             walls,
@@ -237,9 +246,14 @@ impl HeatNetwork {
         let work = &mut self.work;
         let (solid, walled) = (work.bonds.len(), work.reservoir_links.len());
         let nodes = count + self.radiation.radiosities();
+        let bodies = &surroundings.bodies;
+        let all = nodes + bodies.start.len();
+        work.reservoirs.clear();
+        work.reservoirs.extend_from_slice(surroundings.reservoirs);
         work.temperature.clear();
         work.temperature.extend_from_slice(start);
         work.temperature.extend_from_slice(&start[..nodes - count]);
+        work.temperature.extend_from_slice(bodies.start);
         work.lines.clear();
         work.lines.resize(count, SurfaceLine::default());
         let mut outcome = NetworkOutcome::Settled;
@@ -247,7 +261,8 @@ impl HeatNetwork {
             work.last_lines.clone_from(&work.lines);
             lines(&work.temperature[..count], &mut work.lines)?;
             // Without radiation only the lines can bend.
-            if iteration > 0 && self.radiation.is_empty() && work.lines == work.last_lines {
+            let bends = !self.radiation.is_empty() || all > nodes;
+            if iteration > 0 && !bends && work.lines == work.last_lines {
                 outcome = NetworkOutcome::Settled;
                 break;
             }
@@ -259,19 +274,33 @@ impl HeatNetwork {
             work.old
                 .extend(work.lines.iter().map(|line| line.temperature));
             work.old.extend_from_slice(&start[..nodes - count]);
+            for (body, kelvin) in work.temperature[nodes..].iter().enumerate() {
+                let line = (bodies.line)(body, *kelvin);
+                work.capacity.push(line.conductance);
+                work.old.push(line.temperature);
+            }
+            for (reservoir, kelvin) in work.reservoirs.iter_mut().enumerate() {
+                if let Some(body) = bodies.of_reservoir(reservoir) {
+                    *kelvin = work.temperature[nodes + body];
+                }
+            }
             work.bonds.truncate(solid);
             work.reservoir_links.truncate(walled);
             self.radiation.linearise(
                 &work.temperature,
-                surroundings.reservoirs,
+                &work.reservoirs,
                 &mut work.bonds,
                 &mut work.reservoir_links,
             );
             work.sink_conductance.clear();
-            work.sink_conductance.resize(nodes, 0.0);
+            work.sink_conductance.resize(all, 0.0);
             work.drive.clear();
-            work.drive.resize(nodes, 0.0);
+            work.drive.resize(all, 0.0);
             for &([node, reservoir], g) in &work.reservoir_links {
+                if let Some(body) = bodies.of_reservoir(reservoir) {
+                    work.bonds.push(([node, nodes + body], g));
+                    continue;
+                }
                 work.sink_conductance[node] += g;
                 work.drive[node] += g * (surroundings.reservoirs[reservoir] - work.old[node]);
             }
@@ -288,27 +317,44 @@ impl HeatNetwork {
                 outcome = NetworkOutcome::Unsolved { residual };
                 break;
             }
-            outcome = compare(&work.temperature, &work.last, count);
-            if outcome == NetworkOutcome::Settled {
+            let [now, last] = [&work.temperature, &work.last].map(|all| all.split_at(nodes));
+            outcome = compare(now.0, last.0, count);
+            let stays = compare(now.1, last.1, 0) == NetworkOutcome::Settled;
+            if outcome == NetworkOutcome::Settled && stays {
                 break;
             }
         }
-        self.book(count, solid, surroundings.reservoirs);
+        self.body_temperature.clear();
+        self.body_temperature
+            .extend_from_slice(&work.temperature[nodes..]);
+        for (reservoir, kelvin) in work.reservoirs.iter_mut().enumerate() {
+            if let Some(body) = bodies.of_reservoir(reservoir) {
+                *kelvin = self.body_temperature[body];
+            }
+        }
+        self.book(count, [solid, nodes]);
         Ok(outcome)
     }
 
     /// Heat over every bond and link to a reservoir, the same on both of its sides.
-    fn book(&mut self, count: usize, solid: usize, reservoirs: &[f64]) {
+    fn book(&mut self, count: usize, [solid, nodes]: [usize; 2]) {
         let work = &self.work;
-        let kelvin = &work.temperature;
+        let (kelvin, reservoirs) = (&work.temperature, &work.reservoirs);
         self.heat.clear();
         self.heat.resize(count, 0.0);
         self.reservoir_heat.clear();
         self.reservoir_heat.resize(reservoirs.len(), 0.0);
+        self.stiffness.clear();
+        self.stiffness.resize(count, 0.0);
         let row = |node: usize| if node < count { node } else { node - count };
         for (k, &([i, j], g)) in work.bonds.iter().enumerate() {
-            // A surface and its own radiosity are one particle.
-            if row(i) == row(j) && k >= solid {
+            for node in [i, j] {
+                if let Some(own) = self.stiffness.get_mut(node) {
+                    *own += g;
+                }
+            }
+            // A surface and its own radiosity are one particle; bonds to bodies are links to their reservoirs.
+            if (row(i) == row(j) && k >= solid) || j >= nodes {
                 continue;
             }
             let flow = g * (kelvin[j] - kelvin[i]);
@@ -316,6 +362,9 @@ impl HeatNetwork {
             self.heat[row(j)] -= flow;
         }
         for &([node, reservoir], g) in &work.reservoir_links {
+            if let Some(own) = self.stiffness.get_mut(node) {
+                *own += g;
+            }
             let flow = g * (reservoirs[reservoir] - kelvin[node]);
             self.heat[row(node)] += flow;
             self.reservoir_heat[reservoir] += flow;

@@ -1,5 +1,9 @@
 //! Which particles meet what: other particles, walls, and who sees whom.
 
+use std::fmt;
+
+use crate::model::SurfaceLine;
+
 /// Two particles whose surfaces touch or are near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeighbourPair {
@@ -71,4 +75,39 @@ pub struct NetworkSurroundings<'a> {
     pub gas_conductivity: &'a [f64],
     /// Temperature of each reservoir in K: walls, then the surroundings.
     pub reservoirs: &'a [f64],
+    /// Bodies that reservoirs are parts of, whose temperatures the network finds too.
+    pub bodies: NetworkBodies<'a>,
+}
+
+/// Bodies of one temperature that store heat, and the reservoirs that are parts of them.
+#[derive(Clone, Copy)]
+pub struct NetworkBodies<'a> {
+    /// The body of each reservoir; `None`, or nothing, where it has a temperature of its own.
+    pub of: &'a [Option<usize>],
+    /// Temperature of each body in K from which the iteration begins.
+    pub start: &'a [f64],
+    /// What a body takes from the network over its temperature, about a given one in K.
+    pub line: &'a (dyn Fn(usize, f64) -> SurfaceLine + Sync),
+}
+
+impl NetworkBodies<'_> {
+    /// No body at all.
+    pub const NONE: NetworkBodies<'static> = NetworkBodies {
+        of: &[],
+        start: &[],
+        line: &|_, _| SurfaceLine::prescribed(0.0),
+    };
+
+    /// The body that a reservoir is a part of.
+    pub fn of_reservoir(&self, reservoir: usize) -> Option<usize> {
+        self.of.get(reservoir).copied().flatten()
+    }
+}
+
+impl fmt::Debug for NetworkBodies<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("NetworkBodies");
+        shown.field("of", &self.of).field("start", &self.start);
+        shown.finish_non_exhaustive()
+    }
 }

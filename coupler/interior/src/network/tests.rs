@@ -36,6 +36,7 @@ fn step(
     let surroundings = NetworkSurroundings {
         gas_conductivity: &gas,
         reservoirs,
+        bodies: super::NetworkBodies::NONE,
     };
     let solved: Result<NetworkOutcome, ()> = network.solve(old, &surroundings, |_, lines| {
         for (i, line) in lines.iter_mut().enumerate() {
