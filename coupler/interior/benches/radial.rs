@@ -216,16 +216,22 @@ fn main() {
             let pool = pool.build().unwrap();
             let mut model = copies(radius, kelvin, (span, windows), count);
             let gas = Gas::of(kelvin, radius, count);
-            let (time, wall, steps) = pool.install(|| {
+            let (time, wall, steps, rounds) = pool.install(|| {
                 gas.attempt(&mut model, span, false);
-                let (before, start, begin) = (model.work()[0], processor(), Instant::now());
+                let (before, start, begin) = (model.work(), processor(), Instant::now());
                 gas.attempt(&mut model, span, false);
-                let steps = (model.work()[0] - before) as f64 / count as f64;
-                (processor() - start, begin.elapsed().as_secs_f64(), steps)
+                let each = |k: usize| (model.work()[k] - before[k]) as f64 / count as f64;
+                let (steps, rounds) = (each(0), each(3));
+                (
+                    processor() - start,
+                    begin.elapsed().as_secs_f64(),
+                    steps,
+                    rounds,
+                )
             });
             let each = 1e6 * time / (count * SHELLS) as f64;
             println!(
-                "{what}, {threads} threads, {count} particles: {each:.3} µs of processor time a shell and attempt, {:.3} s of wall time; {steps:.1} steps; {} bytes a particle",
+                "{what}, {threads} threads, {count} particles: {each:.3} µs of processor time a shell and attempt, {:.3} s of wall time; {steps:.1} steps, {rounds:.1} rounds; {} bytes a particle",
                 wall,
                 model.bytes()
             );
