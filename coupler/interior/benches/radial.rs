@@ -10,7 +10,9 @@ use calcine_interior::radial::{
     PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid, ShellResolution,
 };
 use calcine_interior::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
-use calcine_interior::{GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE};
+use calcine_interior::{
+    ColumnKind, GasLines, Newcomer, ParticleModel, Ragged, Surroundings, TEMPERATURE, Transfer,
+};
 use calcine_physics::conduction::Conductivity;
 use calcine_physics::film::{FilmCoefficient, FilmTemperature, FilmTheory, StefanFlow};
 use calcine_physics::pores::{Permeability, PorousConductivity};
@@ -20,6 +22,7 @@ use calcine_physics::reaction::{Arrhenius, Conversion, Equilibrium};
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
 use calcine_physics::thermo::Mixture;
+use rustix::time::{ClockId, clock_gettime};
 
 const SHELLS: usize = 30;
 
@@ -81,51 +84,155 @@ fn stones(radius: f64, count: u64) -> Radial {
     made
 }
 
-/// Wall time in s of an attempt, and steps of a particle in it.
-fn attempt(model: &mut Radial, radius: f64, count: usize, span: f64) -> (f64, f64) {
-    let gas = Mixture::new(["CO2", "N2"]).unwrap();
-    let composition = gas.mass_fractions(&[0.2, 0.8]).repeat(count);
-    let around = Surroundings {
-        temperature: &vec![1400.0; count],
-        pressure: &vec![101_325.0; count],
-        composition: &composition,
-        conductance: &vec![100.0 * sphere::surface(radius); count],
-        film: &vec![FilmCoefficient::constant(0.1); 2 * count],
-        theory: FilmTheory {
-            temperature: FilmTemperature::TwoThirds,
-            stefan_flow: StefanFlow::Mass,
-        },
-        radius: &vec![radius; count],
-        end: 0.0,
-    };
-    let mut lines = GasLines::default();
-    lines.reset(count, 2);
-    let network = vec![0.0; count];
-    let before = model.work()[0];
-    let start = Instant::now();
-    model.respond(&around, span, &network, &mut lines).unwrap();
-    let time = start.elapsed().as_secs_f64();
-    (time, (model.work()[0] - before) as f64 / count as f64)
+/// Processor time in s of this process.
+fn processor() -> f64 {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Gas about so many particles.
+struct Gas {
+    temperature: Vec<f64>,
+    pressure: Vec<f64>,
+    composition: Vec<f64>,
+    conductance: Vec<f64>,
+    film: Vec<FilmCoefficient>,
+    radius: Vec<f64>,
+}
+
+impl Gas {
+    fn of(kelvin: f64, radius: f64, count: usize) -> Self {
+        let gas = Mixture::new(["CO2", "N2"]).unwrap();
+        Self {
+            // No two particles see the same.
+            temperature: (0..count).map(|p| kelvin + 1e-3 * p as f64).collect(),
+            pressure: vec![101_325.0; count],
+            composition: gas.mass_fractions(&[0.2, 0.8]).repeat(count),
+            conductance: vec![100.0 * sphere::surface(radius); count],
+            film: vec![FilmCoefficient::constant(0.1); 2 * count],
+            radius: vec![radius; count],
+        }
+    }
+
+    /// One attempt at all particles; committed with what they say as what is exchanged, if asked for.
+    fn attempt(&self, model: &mut Radial, span: f64, commit: bool) {
+        let count = self.temperature.len();
+        let around = Surroundings {
+            temperature: &self.temperature,
+            pressure: &self.pressure,
+            composition: &self.composition,
+            conductance: &self.conductance,
+            film: &self.film,
+            theory: FilmTheory {
+                temperature: FilmTemperature::TwoThirds,
+                stefan_flow: StefanFlow::Mass,
+            },
+            radius: &self.radius,
+            end: 0.0,
+        };
+        let mut lines = GasLines::default();
+        lines.reset(count, 2);
+        let network = vec![0.0; count];
+        model.respond(&around, span, &network, &mut lines).unwrap();
+        if commit {
+            let pairs = (0..count)
+                .map(|p| lines.conductance[p] * (self.temperature[p] - lines.temperature[p]));
+            let heat: Vec<f64> = pairs.collect();
+            let fractions = &self.composition;
+            let rates: Vec<f64> = (0..2 * count)
+                .map(|at| {
+                    lines.slope[at] * if at % 2 == 0 { fractions[at] } else { 0.0 }
+                        - lines.offset[at]
+                })
+                .collect();
+            let took = Transfer {
+                heat: &heat,
+                network: &network,
+                carried: &vec![0.0; count],
+                rates: &rates,
+            };
+            model.settle(&took, span).unwrap();
+            model.commit();
+        }
+    }
+}
+
+/// So many copies of a particle that went on for a while.
+fn copies(radius: f64, kelvin: f64, (span, windows): (f64, usize), count: usize) -> Radial {
+    let mut one = stones(radius, 1);
+    let gas = Gas::of(kelvin, radius, 1);
+    for _ in 0..windows {
+        gas.attempt(&mut one, span, true);
+    }
+    let mut all = stones(radius, count as u64);
+    let columns = one.columns().len();
+    let mut state = vec![Ragged::new(ColumnKind::Real); columns];
+    for (column, copies) in state.iter_mut().enumerate() {
+        let mut own = Ragged::new(ColumnKind::Real);
+        one.read(column, &mut own);
+        copies.reset(ColumnKind::Real);
+        (0..count).for_each(|_| copies.push_reals(own.reals(0)));
+    }
+    all.load(&state).unwrap();
+    all
 }
 
 fn main() {
-    for (radius, span, what) in [
-        (10e-3, 1.0, "stones of 20 mm, windows of 1 s"),
-        (10e-3, 10.0, "stones of 20 mm, windows of 10 s"),
+    let stone = (10e-3, 1400.0);
+    let grain = (78e-6, 1000.0);
+    for ((radius, kelvin), span, windows, what) in [
+        (
+            stone,
+            1.0,
+            0,
+            "stones of 20 mm from their start, windows of 1 s",
+        ),
+        (
+            stone,
+            1.0,
+            300,
+            "stones of 20 mm after 300 s, windows of 1 s",
+        ),
+        (
+            stone,
+            10.0,
+            30,
+            "stones of 20 mm after 300 s, windows of 10 s",
+        ),
+        (
+            grain,
+            1.0,
+            10,
+            "grains of 156 um that react, windows of 1 s",
+        ),
     ] {
-        for threads in [1, 2] {
+        for (threads, count) in [(1, 2000), (2, 2000), (1, 20_000), (1, 100_000)] {
+            if count > 2000
+                && (span > 1.0 || windows == 0 || std::env::var_os("CALCINE_BENCH_LARGE").is_none())
+            {
+                continue;
+            }
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let pool = pool.build().unwrap();
-            let count = 2000;
-            let mut model = stones(radius, count as u64);
-            let (time, steps) = pool.install(|| {
-                attempt(&mut model, radius, count, span);
-                attempt(&mut model, radius, count, span)
+            let mut model = copies(radius, kelvin, (span, windows), count);
+            let gas = Gas::of(kelvin, radius, count);
+            let (time, wall, steps, rounds) = pool.install(|| {
+                gas.attempt(&mut model, span, false);
+                let (before, start, begin) = (model.work(), processor(), Instant::now());
+                gas.attempt(&mut model, span, false);
+                let each = |k: usize| (model.work()[k] - before[k]) as f64 / count as f64;
+                let (steps, rounds) = (each(0), each(3));
+                (
+                    processor() - start,
+                    begin.elapsed().as_secs_f64(),
+                    steps,
+                    rounds,
+                )
             });
             let each = 1e6 * time / (count * SHELLS) as f64;
             println!(
-                "{what}, {threads} threads: {each:.2} µs a shell and attempt ({:.2} of processor time), {steps:.1} steps; {} bytes a particle",
-                each * threads as f64,
+                "{what}, {threads} threads, {count} particles: {each:.3} µs of processor time a shell and attempt, {:.3} s of wall time; {steps:.1} steps, {rounds:.1} rounds; {} bytes a particle",
+                wall,
                 model.bytes()
             );
         }

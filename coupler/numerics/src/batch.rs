@@ -14,20 +14,33 @@ pub fn each_row<W, E: Send>(
     scratch: impl Fn() -> W + Sync + Send,
     work: impl Fn(usize, &mut [f64], &mut W) -> Result<(), E> + Sync + Send,
 ) -> Result<(), E> {
+    each_chunk(values, (width, CHUNK), scratch, |from, values, scratch| {
+        let mut rows = values.chunks_exact_mut(width).enumerate();
+        rows.find_map(|(k, values)| {
+            let error = work(from + k, values, scratch).err()?;
+            Some((from + k, error))
+        })
+    })
+    .map_err(|(_, error)| error)
+}
+
+/// Works on chunks of so many rows of `width` values, such as those that are computed side by side: `work` has the first row of a chunk,
+/// its values and scratch memory, and names the first row of it that fails. The error is that of the first row of all.
+pub fn each_chunk<W, E: Send>(
+    values: &mut [f64],
+    (width, rows): (usize, usize),
+    scratch: impl Fn() -> W + Sync + Send,
+    work: impl Fn(usize, &mut [f64], &mut W) -> Option<(usize, E)> + Sync + Send,
+) -> Result<(), (usize, E)> {
     if width == 0 {
         return Ok(());
     }
-    let chunks = values.par_chunks_mut(CHUNK * width).enumerate();
+    let chunks = values.par_chunks_mut(rows * width).enumerate();
     let failed = chunks.map_init(scratch, |scratch, (chunk, values)| {
-        let mut rows = values.chunks_exact_mut(width).enumerate();
-        rows.find_map(|(k, values)| {
-            let row = chunk * CHUNK + k;
-            let error = work(row, values, scratch).err()?;
-            Some((row, error))
-        })
+        work(chunk * rows, values, scratch)
     });
     match failed.flatten().min_by_key(|(row, _)| *row) {
-        Some((_, error)) => Err(error),
+        Some(failed) => Err(failed),
         None => Ok(()),
     }
 }

@@ -2,9 +2,11 @@
 
 mod block_tridiagonal;
 mod dense;
+mod lane_tridiagonal;
 
 pub use block_tridiagonal::BlockTridiagonal;
 pub use dense::DenseMatrix;
+pub use lane_tridiagonal::{LaneTridiagonal, eliminate};
 
 /// Storage, factors and solution of a matrix of one structure. A Jacobian is a slice of `entries` values whose order
 /// the structure defines.

@@ -1,5 +1,7 @@
 //! Heat capacity of solids.
 
+use calcine_numerics::Lanes;
+
 use crate::gas::REFERENCE_TEMPERATURE;
 use crate::points::linear;
 
@@ -80,6 +82,26 @@ impl HeatCapacity {
         self.enthalpy[place] + mean * (temperature - from)
     }
 
+    /// c_p in J/kg/K and enthalpy in J/kg, counted from the first point, at temperatures in K side by side.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, temperature: Lanes<N>) -> [Lanes<N>; 2] {
+        let (first, capacity) = self.points[0];
+        let [mut from, mut base] = [first, capacity].map(Lanes::all);
+        let (mut slope, mut enthalpy) = (Lanes::default(), Lanes::default());
+        for (k, (point, held)) in self.points.iter().zip(&self.enthalpy).enumerate() {
+            let next = self.points.get(k + 1);
+            let rise = next.map_or(0.0, |next| (next.1 - point.1) / (next.0 - point.0));
+            let [at, of, rise, held] = [point.0, point.1, rise, *held].map(Lanes::all);
+            from = temperature.if_below(at, from, at);
+            base = temperature.if_below(at, base, of);
+            slope = temperature.if_below(at, slope, rise);
+            enthalpy = temperature.if_below(at, enthalpy, held);
+        }
+        let beyond = temperature - from;
+        let capacity = base + slope * beyond;
+        [capacity, enthalpy + (base + capacity) * beyond * 0.5]
+    }
+
     /// Entropy in J/kg/K, counted from the first point.
     pub fn entropy(&self, temperature: f64) -> f64 {
         let next = self
@@ -141,6 +163,18 @@ mod tests {
         }
         assert_eq!(HeatCapacity::constant(840.0).at(77.0), 840.0);
         assert_eq!(HeatCapacity::constant(840.0).slope(77.0), 0.0);
+    }
+
+    #[test]
+    fn side_by_side_it_is_what_it_is_alone() {
+        for law in [alumina(), HeatCapacity::constant(840.0)] {
+            let all = [100.0, 300.0, 450.0, 600.0, 700.0, 1200.0, 1500.0, 299.0];
+            let [capacity, enthalpy] = law.lanes(Lanes(all));
+            for (k, t) in all.into_iter().enumerate() {
+                assert!((capacity[k] / law.at(t) - 1.0).abs() < 1e-14, "{t}");
+                assert!((enthalpy[k] - law.enthalpy(t)).abs() < 1e-9, "{t}");
+            }
+        }
     }
 
     #[test]

@@ -1,13 +1,16 @@
-//! One particle over one window, with the gas about it held (docs/theory.md, XDP-18).
+//! Particles over one window, each in a lane, with the gas about them held (docs/theory.md, XDP-18).
+//!
+//! Every lane goes its own way: it has its own steps, stages and rounds, and takes up the next particle when it has followed one. The
+//! lanes share the rounds of Newton's method ([`RadialPhysics::round`]) alone, so that a particle has the same bits whoever is beside it.
 
-use calcine_numerics::LinearAlgebra;
 use calcine_physics::film::bernoulli;
+use calcine_physics::pores::dusty_gas::MOST_GASES;
 use thiserror::Error;
 
-use super::equations::{carried, face_pressures};
+use super::equations::{FaceFlow, net_flow};
 use super::physics::RadialPhysics;
-use super::transport::Outside;
-use super::workspace::RadialWorkspace;
+use super::transport::{ANY, Outside};
+use super::workspace::{RadialWorkspace, copy_lane, fill_lane};
 
 /// γ of the two stages: L-stable and of second order.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -23,6 +26,12 @@ const COUNTS: f64 = 1e-6;
 const MOST_STEPS: usize = 20_000;
 const SHORTEST: f64 = 1e-7;
 const SAFETY: f64 = 0.9;
+/// Rounds of Newton's method at most, and of those the ones that take coefficients anew: then they are held, so that the
+/// last rounds square what is left.
+const ROUNDS: usize = 40;
+const UPDATES: usize = 4;
+/// Changes that end them, relative to temperature, pressure and the amount of solids.
+const CLOSE: f64 = 1e-8;
 
 /// A particle that cannot be followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
@@ -39,8 +48,8 @@ pub struct RadialStalled {
     pub span: f64,
 }
 
-/// What a window does to a particle; its state is left in the workspace.
-#[derive(Clone, Debug, Default)]
+/// What a window does to a particle; its state is left in the lane of the workspace.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RadialOutcome {
     /// Mean heat from the gas in W, its change with the temperature of the gas in W/K, and that of the surface.
     pub heat: f64,
@@ -51,230 +60,262 @@ pub(super) struct RadialOutcome {
     /// Mean temperature in K with which gas leaves.
     pub released: f64,
     /// Mean flow of each gas to the gas outside in mol/s, and its change with the own mole fraction outside.
-    pub flow: Vec<f64>,
-    pub flow_slope: Vec<f64>,
-    /// Steps that were taken, and repeated; shells and steps that went by the end of a step alone.
+    pub flow: [f64; MOST_GASES],
+    pub flow_slope: [f64; MOST_GASES],
+    /// Steps that were taken, and repeated; shells and steps that went by the end of a step alone; rounds of Newton's method.
     pub steps: usize,
     pub repeated: usize,
     pub fallen_back: usize,
-    /// Sums of the step at hand.
+    pub rounds: usize,
+    /// Sums of the step at hand, and of the gas that left in the window with its temperature.
     step_heat: f64,
     step_weight: [f64; 2],
+    leaving: [f64; 2],
+}
+
+/// The stage at which a particle is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum StageAt {
+    /// Both of the method, the end of the step alone, and how the particle answers at the end of the window.
+    First,
+    Second,
+    Whole,
+    Answer,
+}
+
+/// A particle on its way through a window.
+#[derive(Clone, Debug)]
+pub(super) struct RadialCourse {
+    span: f64,
+    time: f64,
+    /// Length in s of the step at hand, and whether it ends the window.
+    length: f64,
+    ends: bool,
+    stage: StageAt,
+    /// Rounds of the stage so far.
+    round: usize,
+    /// Shells that go by the end of the step alone in the second stage.
+    fallen: usize,
+    pub out: RadialOutcome,
 }
 
 impl RadialPhysics {
-    /// Follows a particle over a span in s. The workspace holds its start; it is left with the end, as `start` and
-    /// `start_gas`. Amounts of the start are `unreacted` where nothing has reacted.
-    pub fn follow(
+    /// Sends the particle that a lane holds, as `start` and `start_gas`, through a span in s. Amounts of the start are `unreacted` where
+    /// nothing has reacted.
+    pub fn send(
         &self,
+        lane: usize,
         outside: &Outside<'_>,
         span: f64,
         ws: &mut RadialWorkspace,
-        out: &mut RadialOutcome,
-    ) -> Result<(), RadialStalled> {
-        let g = ws.gases;
-        for list in [&mut out.flow, &mut out.flow_slope] {
-            list.clear();
-            list.resize(g, 0.0);
-        }
-        (out.heat, out.steps, out.repeated, out.fallen_back) = (0.0, 0, 0, 0);
-        let mut leaving = [0.0; 2];
-        ws.flows.gas.fill(0.0);
-        ws.flows.film.fill(0.0);
-        ws.held.film.fill(0.0);
-        self.begin(outside, ws);
-        let (mut time, mut step) = (0.0, span);
-        loop {
-            let left = span - time;
-            let ends = step >= 0.999 * left;
-            let length = if ends { left } else { step };
-            let error = self.step(outside, length, ws, out);
-            if error <= 1.0 {
-                time += length;
-                out.steps += 1;
-                out.heat += out.step_heat;
-                self.add_flow(ws, out);
-                leaving[0] += out.step_weight[0];
-                leaving[1] += out.step_weight[1];
-                let now = &ws.now;
-                ws.start.temperature.copy_from_slice(&now.temperature);
-                ws.start.pressure.copy_from_slice(&now.pressure);
-                ws.start.amount.copy_from_slice(&now.amount);
-                ws.start_gas.copy_from_slice(&ws.now_gas);
-                if ends {
-                    break;
-                }
-            } else {
-                out.repeated += 1;
-            }
-            let factor = if error.is_finite() {
-                (SAFETY / error.max(1e-10).sqrt()).clamp(0.2, 4.0)
-            } else {
-                0.25
-            };
-            step = length * factor;
-            if step < SHORTEST * span || out.steps + out.repeated > MOST_STEPS {
-                return Err(RadialStalled {
-                    temperature: ws.start.temperature[ws.shells],
-                    reached: time,
-                    span,
-                });
-            }
-        }
-        out.heat /= span;
-        out.flow.iter_mut().for_each(|flow| *flow /= span);
-        out.released = if leaving[0] > 0.0 {
-            leaving[1] / leaving[0]
-        } else {
-            ws.start.temperature[ws.shells]
-        };
-        self.respond(outside, span, ws, out);
-        Ok(())
-    }
-
-    /// Pressures of the start from its amounts, and those at the surface of the gas outside.
-    fn begin(&self, outside: &Outside<'_>, ws: &mut RadialWorkspace) {
+    ) -> RadialCourse {
         let (n, g) = (ws.shells, ws.gases);
-        ws.now.temperature.copy_from_slice(&ws.start.temperature);
-        ws.now.amount.copy_from_slice(&ws.start.amount);
-        self.measure(ws);
-        let gas = std::mem::take(&mut ws.start_gas);
-        self.pressurise(&gas, ws);
-        ws.start_gas = gas;
+        fill_lane(&mut ws.flows.gas, lane, 0.0);
+        fill_lane(&mut ws.flows.film, lane, 0.0);
+        fill_lane(&mut ws.held.film, lane, 0.0);
+        copy_lane(&mut ws.now.temperature, &ws.start.temperature, lane);
+        copy_lane(&mut ws.now.amount, &ws.start.amount, lane);
+        for shell in 0..n {
+            [ws.held.volume[shell][lane], ws.held.pores[shell][lane]] =
+                self.volumes(shell, lane, ws);
+        }
+        ws.taken_up = true;
+        self.pressurise(lane, ws);
         for k in 0..g {
-            ws.now.pressure[n * g + k] =
-                outside.around.pressure * outside.around.fractions[k].max(0.0);
+            ws.now.pressure[n * g + k][lane] = outside.pressure * outside.fractions[k].max(0.0);
         }
-        ws.start.pressure.copy_from_slice(&ws.now.pressure);
+        copy_lane(&mut ws.start.pressure, &ws.now.pressure, lane);
+        ws.fresh[lane] = 1.0;
+        let mut course = RadialCourse {
+            span,
+            time: 0.0,
+            length: span,
+            ends: true,
+            stage: StageAt::First,
+            round: 0,
+            fallen: 0,
+            out: RadialOutcome::default(),
+        };
+        self.begin(lane, &mut course, ws);
+        course
     }
 
-    /// One step of a length in s; its error over the tolerances, infinite where it has no solution.
-    fn step(
+    /// Takes what a round did to the particle of a lane, and sets up the next one; the end of its window where it is reached, with the
+    /// state as `start` and `start_gas`.
+    pub fn advance(
         &self,
+        lane: usize,
         outside: &Outside<'_>,
-        length: f64,
+        course: &mut RadialCourse,
         ws: &mut RadialWorkspace,
-        out: &mut RadialOutcome,
-    ) -> f64 {
-        (out.step_heat, out.step_weight) = (0.0, [0.0; 2]);
-        self.base(ws);
-        let first = GAMMA * length;
-        ws.base.weight.fill(first);
-        if !self.solve(outside, first, ws) {
-            return f64::INFINITY;
+    ) -> Option<Result<(), RadialStalled>> {
+        course.out.rounds += 1;
+        if course.stage == StageAt::Answer {
+            self.answer(lane, outside, ws, &mut course.out);
+            return Some(Ok(()));
         }
-        self.book(ws);
-        self.add(outside, ONWARDS * first, ws, out);
-        ws.first_stage
-            .temperature
-            .copy_from_slice(&ws.now.temperature);
-        ws.first_stage.pressure.copy_from_slice(&ws.now.pressure);
-        ws.first_stage.amount.copy_from_slice(&ws.now.amount);
-        for (turned, own) in ws.turned.iter_mut().zip(&ws.now.extent) {
-            *turned = ONWARDS * own;
+        course.round += 1;
+        let moved = ws.moved[lane];
+        let sound = ws.updating[lane] == 0.0 || ws.broken[lane] == 0.0;
+        let goes = sound && moved.is_finite() && ws.room[lane] > 0.0;
+        if goes && moved > CLOSE && course.round < ROUNDS {
+            ws.updating[lane] = f64::from(u8::from(course.round < UPDATES));
+            return None;
         }
-        let fallen = self.continue_base(length, ws);
-        let mut done = self.solve(outside, first, ws);
-        if done {
-            self.book(ws);
-            done = self.is_positive(ws);
+        let solved = goes && moved <= CLOSE;
+        if solved {
+            self.book(lane, ws);
         }
-        if done {
-            for (turned, own) in ws.turned.iter_mut().zip(&ws.now.extent) {
-                *turned += own;
+        let (length, first) = (course.length, GAMMA * course.length);
+        match course.stage {
+            StageAt::First if solved => {
+                self.add(lane, outside, ONWARDS * first, ws, &mut course.out);
+                let (stage, now) = (&mut ws.first_stage, &ws.now);
+                copy_lane(&mut stage.temperature, &now.temperature, lane);
+                copy_lane(&mut stage.pressure, &now.pressure, lane);
+                copy_lane(&mut stage.amount, &now.amount, lane);
+                for (turned, own) in ws.turned.iter_mut().zip(&ws.now.extent) {
+                    turned[lane] = ONWARDS * own[lane];
+                }
+                course.fallen = self.continue_base(lane, length, ws);
+                enter(lane, StageAt::Second, course, ws);
+                return None;
             }
-            self.add(outside, first, ws, out);
-            out.fallen_back += fallen;
-            return self.error(ws);
+            StageAt::Second if solved && self.is_positive(lane, ws) => {
+                for (turned, own) in ws.turned.iter_mut().zip(&ws.now.extent) {
+                    turned[lane] += own[lane];
+                }
+                self.add(lane, outside, first, ws, &mut course.out);
+                course.out.fallen_back += course.fallen;
+            }
+            StageAt::Second => {
+                // The end of the step alone: positive, and of first order.
+                (course.out.step_heat, course.out.step_weight) = (0.0, [0.0; 2]);
+                copy_lane(&mut ws.now.temperature, &ws.first_stage.temperature, lane);
+                copy_lane(&mut ws.now.pressure, &ws.first_stage.pressure, lane);
+                base_of_start(lane, length, ws);
+                ws.length[lane] = length;
+                enter(lane, StageAt::Whole, course, ws);
+                return None;
+            }
+            StageAt::Whole if solved && self.is_positive(lane, ws) => {
+                copy_lane(&mut ws.turned, &ws.now.extent, lane);
+                self.add(lane, outside, length, ws, &mut course.out);
+                course.out.fallen_back += ws.shells;
+            }
+            _ => return self.judge(lane, f64::INFINITY, course, ws),
         }
-        // The end of the step alone: positive, and of first order.
-        (out.step_heat, out.step_weight) = (0.0, [0.0; 2]);
-        ws.now
-            .temperature
-            .copy_from_slice(&ws.first_stage.temperature);
-        ws.now.pressure.copy_from_slice(&ws.first_stage.pressure);
-        self.base_of_start(ws);
-        ws.base.weight.fill(length);
-        if !self.solve(outside, length, ws) {
-            return f64::INFINITY;
-        }
-        self.book(ws);
-        if !self.is_positive(ws) {
-            return f64::INFINITY;
-        }
-        ws.turned.copy_from_slice(&ws.now.extent);
-        self.add(outside, length, ws, out);
-        out.fallen_back += ws.shells;
-        self.error(ws)
+        let error = self.error(lane, ws);
+        self.judge(lane, error, course, ws)
     }
 
-    /// The start as base and as iterate.
-    fn base(&self, ws: &mut RadialWorkspace) {
-        ws.now.temperature.copy_from_slice(&ws.start.temperature);
-        ws.now.pressure.copy_from_slice(&ws.start.pressure);
-        ws.now.amount.copy_from_slice(&ws.start.amount);
-        self.properties(ws);
-        let (s, g) = (ws.solids, ws.gases);
-        for shell in 0..ws.shells {
-            let held = |amounts: &[f64], enthalpies: &[f64]| -> f64 {
-                amounts.iter().zip(enthalpies).map(|(n, h)| n * h).sum()
-            };
-            let (solids, gases) = (shell * s..(shell + 1) * s, shell * g..(shell + 1) * g);
-            ws.start_enthalpy[shell] =
-                held(&ws.start.amount[solids.clone()], &ws.solid_enthalpy[solids])
-                    + held(&ws.start_gas[gases.clone()], &ws.gas_enthalpy[gases]);
+    /// Takes or repeats a step by its error over the tolerances, and begins the next one.
+    fn judge(
+        &self,
+        lane: usize,
+        error: f64,
+        course: &mut RadialCourse,
+        ws: &mut RadialWorkspace,
+    ) -> Option<Result<(), RadialStalled>> {
+        let out = &mut course.out;
+        if error <= 1.0 {
+            course.time += course.length;
+            out.steps += 1;
+            out.heat += out.step_heat;
+            out.leaving[0] += out.step_weight[0];
+            out.leaving[1] += out.step_weight[1];
+            self.add_flow(lane, ws, out);
+            copy_lane(&mut ws.start.temperature, &ws.now.temperature, lane);
+            copy_lane(&mut ws.start.pressure, &ws.now.pressure, lane);
+            copy_lane(&mut ws.start.amount, &ws.now.amount, lane);
+            copy_lane(&mut ws.start_gas, &ws.now_gas, lane);
+            copy_lane(&mut ws.start_enthalpy, &ws.now_enthalpy, lane);
+            if course.ends {
+                fill_lane(&mut ws.base.weight, lane, course.span);
+                ws.length[lane] = course.span;
+                ws.updating[lane] = 0.0;
+                course.stage = StageAt::Answer;
+                return None;
+            }
+        } else {
+            out.repeated += 1;
         }
-        self.base_of_start(ws);
+        let factor = if error.is_finite() {
+            (SAFETY / error.max(1e-10).sqrt()).clamp(0.2, 4.0)
+        } else {
+            0.25
+        };
+        let step = course.length * factor;
+        if step < SHORTEST * course.span || out.steps + out.repeated > MOST_STEPS {
+            return Some(Err(RadialStalled {
+                temperature: ws.start.temperature[ws.shells][lane],
+                reached: course.time,
+                span: course.span,
+            }));
+        }
+        let left = course.span - course.time;
+        course.ends = step >= 0.999 * left;
+        course.length = if course.ends { left } else { step };
+        self.begin(lane, course, ws);
+        None
     }
 
-    /// The start as base.
-    fn base_of_start(&self, ws: &mut RadialWorkspace) {
-        ws.base.enthalpy.copy_from_slice(&ws.start_enthalpy);
-        ws.base.amount.copy_from_slice(&ws.start.amount);
-        ws.base.gas.copy_from_slice(&ws.start_gas);
+    /// Begins a step: the start as base and as iterate.
+    fn begin(&self, lane: usize, course: &mut RadialCourse, ws: &mut RadialWorkspace) {
+        (course.out.step_heat, course.out.step_weight) = (0.0, [0.0; 2]);
+        copy_lane(&mut ws.now.temperature, &ws.start.temperature, lane);
+        copy_lane(&mut ws.now.pressure, &ws.start.pressure, lane);
+        let first = GAMMA * course.length;
+        base_of_start(lane, first, ws);
+        ws.length[lane] = first;
+        enter(lane, StageAt::First, course, ws);
     }
 
     /// The base of the second stage; how many shells go by the end of the step alone.
-    fn continue_base(&self, length: f64, ws: &mut RadialWorkspace) -> usize {
+    fn continue_base(&self, lane: usize, length: f64, ws: &mut RadialWorkspace) -> usize {
         let (s, g, r) = (ws.solids, ws.gases, ws.reactions);
         let mut fallen = 0;
         for shell in 0..ws.shells {
-            ws.base.enthalpy[shell] = ws.start_enthalpy[shell] + ONWARDS * ws.warmed[shell];
+            ws.base.enthalpy[shell][lane] =
+                ws.start_enthalpy[shell][lane] + ONWARDS * ws.warmed[shell][lane];
             let mut short = false;
             for k in shell * s..(shell + 1) * s {
-                let (start, stage) = (ws.start.amount[k], ws.first_stage.amount[k]);
-                ws.base.amount[k] = start + ONWARDS * (stage - start);
-                short |= ws.base.amount[k] < BEGINS_WITH * stage;
+                let (start, stage) = (ws.start.amount[k][lane], ws.first_stage.amount[k][lane]);
+                let base = start + ONWARDS * (stage - start);
+                ws.base.amount[k][lane] = base;
+                short |= base < BEGINS_WITH * stage;
             }
-            ws.base.weight[shell] = if short { length } else { GAMMA * length };
+            ws.base.weight[shell][lane] = if short { length } else { GAMMA * length };
             let moved = ws.turned[shell * r..(shell + 1) * r].iter();
-            let all: f64 = ws.unreacted[shell * s..(shell + 1) * s].iter().sum();
-            let reacts = moved.fold(0.0, |most: f64, x| most.max(x.abs())) > COUNTS * all;
+            let unreacted = ws.unreacted[shell * s..(shell + 1) * s].iter();
+            let all: f64 = unreacted.map(|own| own[lane]).sum();
+            let reacts = moved.fold(0.0, |most: f64, x| most.max(x[lane].abs())) > COUNTS * all;
             fallen += usize::from(short && reacts);
-            for k in 0..g {
-                let place = shell * g + k;
-                let mut made = ws.came[place];
+            for place in shell * g..(shell + 1) * g {
+                let start = ws.start_gas[place][lane];
+                let mut made = ws.came[place][lane];
                 if !short {
-                    made = ws.now_gas[place] - ws.start_gas[place];
+                    made = ws.now_gas[place][lane] - start;
                 }
-                ws.base.gas[place] = ws.start_gas[place] + ONWARDS * made;
+                ws.base.gas[place][lane] = start + ONWARDS * made;
             }
             if short {
-                let own = shell * s..(shell + 1) * s;
-                ws.base.amount[own.clone()].copy_from_slice(&ws.start.amount[own]);
-                ws.turned[shell * r..(shell + 1) * r].fill(0.0);
+                for k in shell * s..(shell + 1) * s {
+                    ws.base.amount[k][lane] = ws.start.amount[k][lane];
+                }
+                fill_lane(&mut ws.turned[shell * r..(shell + 1) * r], lane, 0.0);
             }
         }
         fallen
     }
 
     /// True where no shell has less than nothing of a solid or a gas.
-    fn is_positive(&self, ws: &RadialWorkspace) -> bool {
+    fn is_positive(&self, lane: usize, ws: &RadialWorkspace) -> bool {
         let g = ws.gases;
-        let solids = ws.now.amount.iter().all(|n| *n >= 0.0);
+        let solids = ws.now.amount.iter().all(|n| n[lane] >= 0.0);
         let gases = ws.now_gas.chunks_exact(g.max(1)).all(|own| {
-            let all: f64 = own.iter().sum();
-            own.iter().all(|n| *n >= -ROUND_OFF * all)
+            let all: f64 = own.iter().map(|n| n[lane]).sum();
+            own.iter().all(|n| n[lane] >= -ROUND_OFF * all)
         });
         solids && gases
     }
@@ -282,58 +323,64 @@ impl RadialPhysics {
     /// Adds what passed to gas and surface in a stage that counts over a length in s.
     fn add(
         &self,
+        lane: usize,
         outside: &Outside<'_>,
         length: f64,
         ws: &RadialWorkspace,
         out: &mut RadialOutcome,
     ) {
         let (n, g) = (ws.shells, ws.gases);
-        let surface = ws.now.temperature[n];
+        let surface = ws.now.temperature[n][lane];
         let mut passing = 0.0;
         for k in 0..g {
-            let flow = ws.flows.gas[(n - 1) * g + k];
-            passing += (flow * ws.gas_capacity[n * g + k]).abs();
+            let flow = ws.flows.gas[(n - 1) * g + k][lane];
+            passing += (flow * ws.gas_capacity[n * g + k][lane]).abs();
         }
-        out.step_heat += length * ws.held.film_heat * (outside.around.temperature - surface);
+        out.step_heat += length * ws.held.film_heat[lane] * (outside.temperature - surface);
         out.step_weight[0] += length * passing;
         out.step_weight[1] += length * passing * surface;
     }
 
     /// Adds the gases that left in a step: what there was, and what was made, less what is there.
-    fn add_flow(&self, ws: &RadialWorkspace, out: &mut RadialOutcome) {
-        let g = ws.gases;
-        for (k, flow) in out.flow.iter_mut().enumerate() {
+    fn add_flow(&self, lane: usize, ws: &RadialWorkspace, out: &mut RadialOutcome) {
+        let (g, r) = (ws.gases, ws.reactions);
+        for (k, flow) in out.flow.iter_mut().enumerate().take(g) {
             for shell in 0..ws.shells {
-                *flow += ws.start_gas[shell * g + k] - ws.now_gas[shell * g + k];
+                let place = shell * g + k;
+                *flow += ws.start_gas[place][lane] - ws.now_gas[place][lane];
             }
         }
-        let r = ws.reactions;
-        for (j, reaction) in self.chemistry.reactions.iter().enumerate() {
-            let turned: f64 = (0..ws.shells).map(|shell| ws.turned[shell * r + j]).sum();
-            for &(k, moles) in &reaction.gases {
-                out.flow[k] += moles * turned;
+        for j in 0..r {
+            let turned = (0..ws.shells).map(|shell| ws.turned[shell * r + j][lane]);
+            let turned: f64 = turned.sum();
+            for (k, flow) in out.flow.iter_mut().enumerate().take(g) {
+                *flow += self.gas_moles[j * g + k] * turned;
             }
         }
     }
 
     /// How far a step is from that of first order by its own stages, over the tolerances.
-    fn error(&self, ws: &RadialWorkspace) -> f64 {
-        let volume: f64 = ws.held.volume.iter().sum();
-        let mut off = 0.0;
+    fn error(&self, lane: usize, ws: &RadialWorkspace) -> f64 {
+        let (mut volume, mut off) = (0.0, 0.0);
         for shell in 0..ws.shells {
-            let (start, now) = (ws.start.temperature[shell], ws.now.temperature[shell]);
-            let stage = ws.first_stage.temperature[shell];
-            off += ws.held.volume[shell] * (now - start - (stage - start) / GAMMA).abs();
+            let (start, now) = (
+                ws.start.temperature[shell][lane],
+                ws.now.temperature[shell][lane],
+            );
+            let stage = ws.first_stage.temperature[shell][lane];
+            let own = ws.held.volume[shell][lane];
+            volume += own;
+            off += own * (now - start - (stage - start) / GAMMA).abs();
         }
         let mut turned: f64 = 0.0;
-        let all: f64 = ws.unreacted.iter().sum();
+        let all: f64 = ws.unreacted.iter().map(|own| own[lane]).sum();
         let s = ws.solids;
         for k in 0..s {
             let mut sum = 0.0;
             for shell in 0..ws.shells {
                 let place = shell * s + k;
-                let (start, now) = (ws.start.amount[place], ws.now.amount[place]);
-                sum += now - start - (ws.first_stage.amount[place] - start) / GAMMA;
+                let (start, now) = (ws.start.amount[place][lane], ws.now.amount[place][lane]);
+                sum += now - start - (ws.first_stage.amount[place][lane] - start) / GAMMA;
             }
             turned = turned.max(sum.abs());
         }
@@ -342,51 +389,87 @@ impl RadialPhysics {
         kelvin.max(turned / all / numerics.conversion)
     }
 
-    /// How the particle as a whole follows the gas over the span: by one implicit step about its end.
-    fn respond(
+    /// Means of the window, and how the particle as a whole follows the gas over its span: by one implicit step about its end, of which
+    /// the round at hand has eliminated all but the surface.
+    fn answer(
         &self,
+        lane: usize,
         outside: &Outside<'_>,
-        span: f64,
         ws: &mut RadialWorkspace,
         out: &mut RadialOutcome,
     ) {
         let (n, g) = (ws.shells, ws.gases);
         let block = 1 + g;
-        ws.base.weight.fill(span);
-        self.assemble(outside, span, ws);
-        let film: f64 = ws.held.film_heat;
-        let beyond = outside.around.pressure;
-        let pressure: f64 = ws.now.pressure[n * g..(n + 1) * g].iter().sum();
-        let net = ws.held.opening * (pressure - beyond);
-        ws.entries.iter_mut().for_each(|value| *value = -*value);
-        if !ws.algebra.factorise(0.0, &ws.entries) {
-            // Without slopes the exchange is told as it is.
-            (out.heat_slope, out.surface_slope, out.surface_by_heat) = (film, 0.0, 0.0);
-            return;
-        }
-        ws.right.fill(0.0);
-        ws.right[n * block] = 1.0;
-        ws.algebra.solve(&mut ws.right);
-        out.surface_by_heat = ws.right[n * block];
+        copy_lane(&mut ws.now.temperature, &ws.start.temperature, lane);
+        copy_lane(&mut ws.now.pressure, &ws.start.pressure, lane);
+        let film = ws.held.film_heat[lane];
+        let surface = ws.algebra.above(n);
+        out.surface_by_heat = surface[0][lane];
         out.surface_slope = film * out.surface_by_heat;
         out.heat_slope = film * (1.0 - out.surface_slope);
+        let net = net_flow(lane, outside, ws);
+        // What the film passes is what the outermost shell does.
+        let face = n - 1;
+        let through = FaceFlow::of::<ANY>(face, ws);
+        let inside = ws.algebra.above(face);
         for k in 0..g {
-            let number = net / ws.held.film[k];
-            let direct = ws.held.film[k] * bernoulli(number);
-            ws.right.fill(0.0);
-            ws.right[n * block + 1 + k] = direct;
-            ws.algebra.solve(&mut ws.right);
-            // What the film passes is what the outermost shell does.
-            let face = n - 1;
-            let ends = face_pressures(face, ws);
-            let [_, by_here, by_there, own_here, own_there] = carried(face, k, ends, ws);
-            let step = |node: usize, j: usize| ws.right[node * block + 1 + j];
-            let mut flow = own_here * step(face, k) + own_there * step(n, k);
+            let number = net / ws.held.film[k][lane];
+            let direct = ws.held.film[k][lane] * bernoulli(number);
+            let mut at_surface = [0.0; 1 + MOST_GASES];
+            let mut within = [0.0; 1 + MOST_GASES];
+            for i in 0..block {
+                at_surface[i] = direct * surface[i * block + 1 + k][lane];
+            }
+            for i in 0..block {
+                let pairs = (0..block).map(|j| inside[i * block + j][lane] * at_surface[j]);
+                within[i] = -pairs.sum::<f64>();
+            }
+            let carried = through.carried(face, k, ws);
+            let mut flow = carried.own_here[lane] * within[1 + k]
+                + carried.own_there[lane] * at_surface[1 + k];
             for j in 0..g {
-                let diffusive = ws.held.diffusion[(face * g + k) * g + j];
-                flow += (diffusive + by_here) * step(face, j) + (by_there - diffusive) * step(n, j);
+                let diffusive = ws.held.diffusion[(face * g + k) * g + j][lane];
+                flow += (diffusive + carried.by_here[lane]) * within[1 + j]
+                    + (carried.by_there[lane] - diffusive) * at_surface[1 + j];
             }
             out.flow_slope[k] = flow;
         }
+        let slopes = out.flow_slope.iter().all(|slope| slope.is_finite());
+        if !(slopes && out.surface_by_heat.is_finite()) {
+            // Without slopes the exchange is told as it is.
+            (out.heat_slope, out.surface_slope, out.surface_by_heat) = (film, 0.0, 0.0);
+            out.flow_slope = [0.0; MOST_GASES];
+        }
     }
+}
+
+impl RadialCourse {
+    /// Ends it: sums become means.
+    pub fn end(mut self, lane: usize, ws: &RadialWorkspace) -> RadialOutcome {
+        let out = &mut self.out;
+        out.heat /= self.span;
+        out.flow.iter_mut().for_each(|flow| *flow /= self.span);
+        out.released = if out.leaving[0] > 0.0 {
+            out.leaving[1] / out.leaving[0]
+        } else {
+            ws.start.temperature[ws.shells][lane]
+        };
+        self.out
+    }
+}
+
+/// The start as base, from which rates count over a length in s.
+fn base_of_start(lane: usize, length: f64, ws: &mut RadialWorkspace) {
+    copy_lane(&mut ws.base.enthalpy, &ws.start_enthalpy, lane);
+    copy_lane(&mut ws.base.amount, &ws.start.amount, lane);
+    copy_lane(&mut ws.base.gas, &ws.start_gas, lane);
+    fill_lane(&mut ws.base.weight, lane, length);
+}
+
+/// Begins a stage: nothing has reacted in it.
+fn enter(lane: usize, stage: StageAt, course: &mut RadialCourse, ws: &mut RadialWorkspace) {
+    (course.stage, course.round) = (stage, 0);
+    fill_lane(&mut ws.now.extent, lane, 0.0);
+    copy_lane(&mut ws.now.amount, &ws.base.amount, lane);
+    ws.updating[lane] = 1.0;
 }

@@ -10,164 +10,148 @@
 //! n and what drives it both move, as a product that is small. The balance of enthalpy less those of the gases times their enthalpies is
 //! one of heat: c_p ∂T, the heat of reaction, and what differs in temperature.
 
-use calcine_numerics::Dual;
+use calcine_numerics::linear::eliminate;
+use calcine_numerics::{Dual, Number};
 use calcine_physics::film::bernoulli;
 use calcine_physics::gas::GAS_CONSTANT;
 
 use super::physics::RadialPhysics;
 use super::rates::ShellState;
-use super::transport::Outside;
-use super::workspace::RadialWorkspace;
+use super::transport::{ANY, Outside, OutsideLanes};
+use super::workspace::{RadialWorkspace, Wide};
 
 /// Where entries of the block-tridiagonal matrix stand: row of blocks, its neighbour (0 inside, 1 itself, 2 outside), row, column.
+#[inline(always)]
 fn at(block: usize, (row, side): (usize, usize), i: usize, j: usize) -> usize {
     ((3 * row + side) * block + i) * block + j
 }
 
 impl RadialPhysics {
     /// Fills enthalpies and heat capacities at the iterate.
-    pub fn properties(&self, ws: &mut RadialWorkspace) {
-        let (n, s, g) = (ws.shells, ws.solids, ws.gases);
+    #[inline(always)]
+    pub fn properties<const G: usize>(&self, ws: &mut RadialWorkspace) {
+        let (n, s) = (ws.shells, ws.solids);
+        let g = if G == ANY { ws.gases } else { G };
         for shell in 0..n {
             let kelvin = ws.now.temperature[shell];
             for (k, solid) in self.chemistry.solids.iter().enumerate() {
-                let molar = solid.molar_mass();
-                ws.solid_enthalpy[shell * s + k] =
-                    solid.formation_enthalpy() + molar * solid.enthalpy(kelvin);
-                ws.solid_capacity[shell * s + k] = molar * solid.heat_capacity(kelvin);
+                [
+                    ws.solid_capacity[shell * s + k],
+                    ws.solid_enthalpy[shell * s + k],
+                ] = solid.molar_lanes(kelvin);
             }
         }
-        let Some(gas) = &self.chemistry.gas else {
-            return;
-        };
+        let gases = self
+            .chemistry
+            .gas
+            .as_ref()
+            .map_or(&[][..], |gas| gas.species());
         for node in 0..=n {
             let kelvin = ws.now.temperature[node];
-            for (k, one) in gas.species().iter().enumerate() {
-                let molar = self.gas_mass[k];
-                ws.gas_enthalpy[node * g + k] =
-                    self.gas_formation[k] + molar * one.enthalpy(kelvin);
-                ws.gas_capacity[node * g + k] = molar * one.heat_capacity(kelvin);
+            for (k, one) in gases.iter().enumerate().take(g) {
+                [ws.gas_capacity[node * g + k], ws.gas_enthalpy[node * g + k]] =
+                    one.polynomial().lanes(kelvin);
             }
+        }
+        if ws.fresh.any(|fresh| fresh > 0.0) {
+            self.start_enthalpy(ws);
         }
     }
 
-    /// Fills flows at the iterate with the coefficients as they are held.
-    pub fn flows(&self, outside: &Outside<'_>, ws: &mut RadialWorkspace) {
-        let (n, g) = (ws.shells, ws.gases);
-        for face in 0..n {
-            let ends = face_pressures(face, ws);
-            let mut enthalpy = ws.held.conductance[face]
-                * (ws.now.temperature[face] - ws.now.temperature[face + 1]);
-            let share = if face + 1 == n {
-                0.0
-            } else {
-                ws.held.heat_share[face]
-            };
-            for k in 0..g {
-                let mut flow = 0.0;
-                for j in 0..g {
-                    flow += ws.held.diffusion[(face * g + k) * g + j]
-                        * (ws.now.pressure[face * g + j] - ws.now.pressure[(face + 1) * g + j]);
-                }
-                flow += carried(face, k, ends, ws)[0];
-                ws.flows.gas[face * g + k] = flow;
-                let own = ws.gas_enthalpy[face * g + k];
-                let next = ws.gas_enthalpy[(face + 1) * g + k];
-                enthalpy += flow * (share * own + (1.0 - share) * next);
+    /// Enthalpies of shells at the start, which is the iterate, in the lanes where they are not known.
+    #[inline(always)]
+    fn start_enthalpy(&self, ws: &mut RadialWorkspace) {
+        let (s, g) = (ws.solids, ws.gases);
+        for shell in 0..ws.shells {
+            let mut sum = Wide::default();
+            for k in shell * s..(shell + 1) * s {
+                sum += ws.start.amount[k] * ws.solid_enthalpy[k];
             }
-            ws.flows.enthalpy[face] = enthalpy;
+            for k in shell * g..(shell + 1) * g {
+                sum += ws.start_gas[k] * ws.gas_enthalpy[k];
+            }
+            for own in [&mut ws.start_enthalpy[shell], &mut ws.base.enthalpy[shell]] {
+                *own = ws.fresh.if_positive(sum, *own);
+            }
         }
-        let beyond = outside.around.pressure;
-        let pressure: f64 = ws.now.pressure[n * g..].iter().sum();
-        let net = ws.held.opening * (pressure - beyond);
-        for k in 0..g {
-            let own = ws.held.film[k];
-            let number = net / own;
-            let fraction = ws.now.pressure[n * g + k] / beyond;
-            let gas = outside.around.fractions[k];
-            ws.flows.film[k] = own * (bernoulli(-number) * fraction - bernoulli(number) * gas);
-        }
+        ws.fresh = Wide::default();
     }
 
-    /// Fills matrix and right side at the iterate, of a stage whose flows count over `length` in s.
-    pub fn assemble(&self, outside: &Outside<'_>, length: f64, ws: &mut RadialWorkspace) {
+    /// Fills matrix and right side at the iterate, of stages whose flows count over `ws.length`.
+    #[inline(always)]
+    pub fn assemble<const G: usize>(&self, outside: &OutsideLanes<'_>, ws: &mut RadialWorkspace) {
         let n = ws.shells;
-        ws.entries.fill(0.0);
-        ws.right.fill(0.0);
-        self.properties(ws);
-        self.flows(outside, ws);
+        ws.entries.fill(Wide::default());
+        ws.right.fill(Wide::default());
         for shell in 0..n {
-            self.shell(shell, ws);
+            self.shell::<G>(shell, ws);
         }
         for face in 0..n {
-            self.pass(face, length, ws);
+            self.pass::<G>(face, ws);
         }
-        self.surface(outside, ws);
+        for (lane, outside) in outside.iter().enumerate() {
+            if let Some(outside) = outside {
+                self.surface(lane, outside, ws);
+            }
+        }
     }
 
     /// What is stored in a shell, and its reactions.
-    fn shell(&self, shell: usize, ws: &mut RadialWorkspace) {
-        let (s, g, r) = (ws.solids, ws.gases, ws.reactions);
+    #[inline(always)]
+    fn shell<const G: usize>(&self, shell: usize, ws: &mut RadialWorkspace) {
+        let (s, r) = (ws.solids, ws.reactions);
+        let g = if G == ANY { ws.gases } else { G };
         let block = 1 + g;
-        self.eliminate(shell, ws);
+        self.eliminate::<G>(shell, ws);
         let kelvin = ws.now.temperature[shell];
-        let per_pascal = ws.held.pores[shell] / (GAS_CONSTANT * kelvin);
+        let over = kelvin.inverse();
+        let per_pascal = ws.held.pores[shell] * over * (1.0 / GAS_CONSTANT);
         let own = (shell, 1);
-        let amounts = &ws.now.amount[shell * s..(shell + 1) * s];
         let mut enthalpy = -ws.base.enthalpy[shell];
-        let mut capacity = 0.0;
-        for (k, n) in amounts.iter().enumerate() {
-            enthalpy += n * ws.solid_enthalpy[shell * s + k];
-            capacity += n * ws.solid_capacity[shell * s + k];
+        let mut capacity = Wide::default();
+        for k in shell * s..(shell + 1) * s {
+            enthalpy += ws.now.amount[k] * ws.solid_enthalpy[k];
+            capacity += ws.now.amount[k] * ws.solid_capacity[k];
         }
         for k in 0..g {
             let mut made = ws.base.gas[shell * g + k];
-            for (j, reaction) in self.chemistry.reactions.iter().enumerate() {
-                for &(_, moles) in reaction.gases.iter().filter(|one| one.0 == k) {
-                    made += moles * ws.now.extent[shell * r + j];
-                }
+            for j in 0..r {
+                made += ws.now.extent[shell * r + j] * self.gas_moles[j * g + k];
             }
             let pressure = ws.now.pressure[shell * g + k];
             let stored = pressure * per_pascal;
             ws.right[shell * block + 1 + k] -= stored - made;
             enthalpy += made * ws.gas_enthalpy[shell * g + k];
             capacity += made * ws.gas_capacity[shell * g + k];
-            ws.entries[at(block, own, 1 + k, 0)] -= stored / kelvin;
+            ws.entries[at(block, own, 1 + k, 0)] -= stored * over;
             ws.entries[at(block, own, 1 + k, 1 + k)] += per_pascal;
         }
         ws.right[shell * block] -= enthalpy;
         ws.entries[at(block, own, 0, 0)] += capacity;
         for (j, reaction) in self.chemistry.reactions.iter().enumerate() {
             let place = shell * r + j;
-            let mut heat = 0.0;
+            let mut heat = Wide::default();
             for &(k, moles) in &reaction.solids {
-                heat += moles * ws.solid_enthalpy[shell * s + k];
+                heat += ws.solid_enthalpy[shell * s + k] * moles;
             }
             for &(k, moles) in &reaction.gases {
-                heat += moles * ws.gas_enthalpy[shell * g + k];
+                heat += ws.gas_enthalpy[shell * g + k] * moles;
             }
             let (rest, by_temperature) = (ws.extent_rest[place], ws.extent_by_temperature[place]);
-            let by_pressure = &ws.extent_by_pressure[place * g..(place + 1) * g];
             ws.right[shell * block] -= heat * rest;
             ws.entries[at(block, own, 0, 0)] += heat * by_temperature;
-            for (h, by) in by_pressure.iter().enumerate() {
+            for h in 0..g {
+                let by = ws.extent_by_pressure[place * g + h];
                 ws.entries[at(block, own, 0, 1 + h)] += heat * by;
             }
-            let opens = self.opens[j] / (GAS_CONSTANT * kelvin);
+            let opens = over * (self.opens[j] / GAS_CONSTANT);
             for k in 0..g {
-                let moles: f64 = reaction
-                    .gases
-                    .iter()
-                    .filter(|one| one.0 == k)
-                    .map(|one| one.1)
-                    .sum();
-                let effect = ws.now.pressure[shell * g + k] * opens - moles;
-                if effect == 0.0 {
-                    continue;
-                }
+                let moles = self.gas_moles[j * g + k];
+                let effect = ws.now.pressure[shell * g + k] * opens - Wide::all(moles);
                 ws.right[shell * block + 1 + k] -= effect * rest;
                 ws.entries[at(block, own, 1 + k, 0)] += effect * by_temperature;
-                for (h, by) in by_pressure.iter().enumerate() {
+                for h in 0..g {
+                    let by = ws.extent_by_pressure[place * g + h];
                     ws.entries[at(block, own, 1 + k, 1 + h)] += effect * by;
                 }
             }
@@ -175,8 +159,10 @@ impl RadialPhysics {
     }
 
     /// Takes the extents of a shell out of its linear equations: δξ = rest + (by T) δT + (by p) δp.
-    fn eliminate(&self, shell: usize, ws: &mut RadialWorkspace) {
-        let (s, g, r) = (ws.solids, ws.gases, ws.reactions);
+    #[inline(always)]
+    fn eliminate<const G: usize>(&self, shell: usize, ws: &mut RadialWorkspace) {
+        let (s, r) = (ws.solids, ws.reactions);
+        let g = if G == ANY { ws.gases } else { G };
         let width = r + 2 + g;
         let weight = ws.base.weight[shell];
         let state = ShellState {
@@ -190,12 +176,11 @@ impl RadialPhysics {
             self.rate(j, &state, &mut ws.rate);
             let row = &mut ws.small[j * width..(j + 1) * width];
             for (i, reaction) in self.chemistry.reactions.iter().enumerate() {
-                let slope: f64 = reaction
-                    .solids
-                    .iter()
-                    .map(|&(k, n)| n * ws.rate.by_amount[k])
-                    .sum();
-                row[i] = f64::from(u8::from(i == j)) - weight * slope;
+                let mut slope = Wide::default();
+                for &(k, n) in &reaction.solids {
+                    slope += ws.rate.by_amount[k] * n;
+                }
+                row[i] = -(weight * slope) + f64::from(u8::from(i == j));
             }
             row[r] = weight * ws.rate.value - ws.now.extent[shell * r + j];
             row[r + 1] = weight * ws.rate.by_temperature;
@@ -203,25 +188,30 @@ impl RadialPhysics {
                 row[r + 2 + h] = weight * ws.rate.by_pressure[h];
             }
         }
-        reduce(&mut ws.small[..r * width], r, width);
+        eliminate(&mut ws.small[..r * width], r, width);
         for j in 0..r {
             let row = &ws.small[j * width..(j + 1) * width];
             let place = shell * r + j;
             ws.extent_rest[place] = row[r];
             ws.extent_by_temperature[place] = row[r + 1];
-            ws.extent_by_pressure[place * g..(place + 1) * g].copy_from_slice(&row[r + 2..]);
+            for h in 0..g {
+                ws.extent_by_pressure[place * g + h] = row[r + 2 + h];
+            }
         }
     }
 
     /// What passes the outer face of a shell.
-    fn pass(&self, face: usize, length: f64, ws: &mut RadialWorkspace) {
-        let (n, g) = (ws.shells, ws.gases);
+    #[inline(always)]
+    fn pass<const G: usize>(&self, face: usize, ws: &mut RadialWorkspace) {
+        let n = ws.shells;
+        let g = if G == ANY { ws.gases } else { G };
         let block = 1 + g;
         let last = face + 1 == n;
         let inner = |side: usize, i, j| at(block, (face, side), i, j);
         let outer = |side: usize, i, j| at(block, (face + 1, side), i, j);
+        let length = ws.length;
         // The surface stores nothing: its balance is of rates.
-        let beyond = if last { 1.0 } else { length };
+        let beyond = if last { Wide::all(1.0) } else { length };
         let conductance = ws.held.conductance[face];
         let heat = conductance * (ws.now.temperature[face] - ws.now.temperature[face + 1]);
         ws.right[face * block] -= length * heat;
@@ -230,129 +220,149 @@ impl RadialPhysics {
         ws.entries[inner(2, 0, 0)] -= length * conductance;
         ws.entries[outer(1, 0, 0)] += beyond * conductance;
         ws.entries[outer(0, 0, 0)] -= beyond * conductance;
-        let ends = face_pressures(face, ws);
-        let share = if last { 0.0 } else { ws.held.heat_share[face] };
+        if g == 0 {
+            return;
+        }
+        let through = FaceFlow::of::<G>(face, ws);
+        let share = if last {
+            Wide::default()
+        } else {
+            ws.held.heat_share[face]
+        };
+        let rest = -share + 1.0;
         for k in 0..g {
-            let flow = ws.flows.gas[face * g + k];
+            let carried = through.carried(face, k, ws);
+            let mut flow = carried.flow;
+            for j in 0..g {
+                let drop = ws.now.pressure[face * g + j] - ws.now.pressure[(face + 1) * g + j];
+                flow += ws.held.diffusion[(face * g + k) * g + j] * drop;
+            }
+            ws.flows.gas[face * g + k] = flow;
             ws.right[face * block + 1 + k] -= length * flow;
             ws.right[(face + 1) * block + 1 + k] += beyond * flow;
             // What passes is of the enthalpy h = s h_i + (1 − s) h_o, of which h_i, and h_o, is in the balance of gas.
             let step = ws.gas_enthalpy[(face + 1) * g + k] - ws.gas_enthalpy[face * g + k];
-            let (more, less) = ((1.0 - share) * step, -share * step);
-            ws.right[face * block] -= length * flow * more;
-            ws.entries[inner(1, 0, 0)] -=
-                length * flow * (1.0 - share) * ws.gas_capacity[face * g + k];
-            ws.entries[inner(2, 0, 0)] +=
-                length * flow * (1.0 - share) * ws.gas_capacity[(face + 1) * g + k];
+            let (more, less) = (length * rest * step, -(length * share * step));
+            ws.right[face * block] -= flow * more;
+            let brings = [face, face + 1].map(|node| length * flow * ws.gas_capacity[node * g + k]);
+            ws.entries[inner(1, 0, 0)] -= rest * brings[0];
+            ws.entries[inner(2, 0, 0)] += rest * brings[1];
             if !last {
-                ws.right[(face + 1) * block] += length * flow * less;
-                ws.entries[outer(1, 0, 0)] +=
-                    length * flow * share * ws.gas_capacity[(face + 1) * g + k];
-                ws.entries[outer(0, 0, 0)] -= length * flow * share * ws.gas_capacity[face * g + k];
+                ws.right[(face + 1) * block] += flow * less;
+                ws.entries[outer(1, 0, 0)] += share * brings[1];
+                ws.entries[outer(0, 0, 0)] -= share * brings[0];
             }
-            let [_, by_here, by_there, own_here, own_there] = carried(face, k, ends, ws);
             for j in 0..g {
                 let diffusive = ws.held.diffusion[(face * g + k) * g + j];
-                let own = f64::from(u8::from(j == k));
-                let here = diffusive + by_here + own * own_here;
-                let there = -diffusive + by_there + own * own_there;
+                let (mut here, mut there) =
+                    (diffusive + carried.by_here, carried.by_there - diffusive);
+                if j == k {
+                    here += carried.own_here;
+                    there += carried.own_there;
+                }
                 ws.entries[inner(1, 1 + k, 1 + j)] += length * here;
                 ws.entries[inner(2, 1 + k, 1 + j)] += length * there;
                 ws.entries[outer(0, 1 + k, 1 + j)] -= beyond * here;
                 ws.entries[outer(1, 1 + k, 1 + j)] -= beyond * there;
-                ws.entries[inner(1, 0, 1 + j)] += length * more * here;
-                ws.entries[inner(2, 0, 1 + j)] += length * more * there;
+                ws.entries[inner(1, 0, 1 + j)] += more * here;
+                ws.entries[inner(2, 0, 1 + j)] += more * there;
                 if !last {
-                    ws.entries[outer(0, 0, 1 + j)] -= length * less * here;
-                    ws.entries[outer(1, 0, 1 + j)] -= length * less * there;
+                    ws.entries[outer(0, 0, 1 + j)] -= less * here;
+                    ws.entries[outer(1, 0, 1 + j)] -= less * there;
                 }
             }
         }
     }
 
-    /// What passes from the surface through the film, and to it from contacts and radiation.
-    fn surface(&self, outside: &Outside<'_>, ws: &mut RadialWorkspace) {
+    /// What passes from the surface of a lane through the film, and to it from contacts and radiation.
+    fn surface(&self, lane: usize, outside: &Outside<'_>, ws: &mut RadialWorkspace) {
         let (n, g) = (ws.shells, ws.gases);
         let block = 1 + g;
         let own = (n, 1);
-        let film = ws.held.film_heat;
-        let received = film * (outside.around.temperature - ws.now.temperature[n]) + outside.heat;
-        ws.right[n * block] += received;
-        ws.entries[at(block, own, 0, 0)] += film;
-        let beyond = outside.around.pressure;
-        let pressure: f64 = ws.now.pressure[n * g..(n + 1) * g].iter().sum();
-        let net = ws.held.opening * (pressure - beyond);
+        let film = ws.held.film_heat[lane];
+        let kelvin = ws.now.temperature[n][lane];
+        ws.right[n * block][lane] += film * (outside.temperature - kelvin) + outside.heat;
+        ws.entries[at(block, own, 0, 0)][lane] += film;
+        let net = net_flow(lane, outside, ws);
+        let opening = ws.held.opening[lane];
         for k in 0..g {
-            ws.right[n * block + 1 + k] -= ws.flows.film[k];
-            let number = Dual::<1>::along(net / ws.held.film[k], 0);
-            let fraction = ws.now.pressure[n * g + k] / beyond;
+            let coefficient = ws.held.film[k][lane];
+            let number = Dual::<1>::along(net / coefficient, 0);
+            let fraction = ws.now.pressure[n * g + k][lane] / outside.pressure;
             let (away, back) = (bernoulli(-number), bernoulli(number));
-            let gas = outside.around.fractions[k];
+            let gas = outside.fractions[k];
+            let flow = away.times(fraction) - back.times(gas);
+            ws.flows.film[k][lane] = coefficient * flow.value;
+            ws.right[n * block + 1 + k][lane] -= coefficient * flow.value;
             // A c β ∂φ = L ∂p.
-            let by_net = (away.slope[0] * fraction - back.slope[0] * gas) * ws.held.opening;
             for j in 0..g {
-                ws.entries[at(block, own, 1 + k, 1 + j)] += by_net;
+                ws.entries[at(block, own, 1 + k, 1 + j)][lane] += flow.slope[0] * opening;
             }
-            ws.entries[at(block, own, 1 + k, 1 + k)] += ws.held.film[k] * away.value / beyond;
+            ws.entries[at(block, own, 1 + k, 1 + k)][lane] +=
+                coefficient * away.value / outside.pressure;
         }
     }
 }
 
-/// Pressures in Pa at both nodes of a face.
-pub(super) fn face_pressures(face: usize, ws: &RadialWorkspace) -> [f64; 2] {
-    let g = ws.gases;
-    [face, face + 1].map(|node| ws.now.pressure[node * g..(node + 1) * g].iter().sum())
+/// What flows by pressure through the film in mol/s.
+pub(super) fn net_flow(lane: usize, outside: &Outside<'_>, ws: &RadialWorkspace) -> f64 {
+    let (n, g) = (ws.shells, ws.gases);
+    let surface = ws.now.pressure[n * g..].iter();
+    let pressure: f64 = surface.map(|own| own[lane]).sum();
+    ws.held.opening[lane] * (pressure - outside.pressure)
 }
 
-/// What of a gas flows through a face by the pressures at its ends, F (p_i² − p_o²)/2 x in mol/s with the mole fraction x between both;
-/// its changes with the pressures of all gases alike inside and outside, and what comes on top with that of its own.
-pub(super) fn carried(
-    face: usize,
-    gas: usize,
-    [here, there]: [f64; 2],
-    ws: &RadialWorkspace,
-) -> [f64; 5] {
-    let g = ws.gases;
-    let weight = ws.held.share[face * g + gas];
-    let one = ws.now.pressure[face * g + gas] / here;
-    let other = ws.now.pressure[(face + 1) * g + gas] / there;
-    let fraction = weight * one + (1.0 - weight) * other;
-    let (flow, square) = (ws.held.flow[face], 0.5 * (here + there) * (here - there));
-    let own_here = flow * square * weight / here;
-    let own_there = flow * square * (1.0 - weight) / there;
-    [
-        flow * square * fraction,
-        flow * here * fraction - own_here * one,
-        -flow * there * fraction - own_there * other,
-        own_here,
-        own_there,
-    ]
+/// A face through which gas flows by pressure: the pressures at both nodes in Pa, ones over them, and (p_i² − p_o²)/2.
+pub(super) struct FaceFlow {
+    ends: [Wide; 2],
+    over: [Wide; 2],
+    square: Wide,
 }
 
-/// Brings the first `r` columns of `r` rows to one: Gauss and Jordan, with row pivots.
-fn reduce(rows: &mut [f64], r: usize, width: usize) {
-    for k in 0..r {
-        let size = |row: usize| rows[row * width + k].abs();
-        let best = (k..r).fold(
-            k,
-            |best, row| if size(row) > size(best) { row } else { best },
-        );
-        if best != k {
-            for column in 0..width {
-                rows.swap(k * width + column, best * width + column);
-            }
+/// What of a gas flows through a face by pressure in mol/s; its changes with the pressures of all gases alike inside and outside, and
+/// what comes on top with that of its own.
+pub(super) struct CarriedGas {
+    pub flow: Wide,
+    pub by_here: Wide,
+    pub by_there: Wide,
+    pub own_here: Wide,
+    pub own_there: Wide,
+}
+
+impl FaceFlow {
+    #[inline(always)]
+    pub fn of<const G: usize>(face: usize, ws: &RadialWorkspace) -> Self {
+        let g = if G == ANY { ws.gases } else { G };
+        let mut ends = [Wide::default(); 2];
+        for k in 0..g {
+            ends[0] += ws.now.pressure[face * g + k];
+            ends[1] += ws.now.pressure[(face + 1) * g + k];
         }
-        let inverse = 1.0 / rows[k * width + k];
-        for column in k..width {
-            rows[k * width + column] *= inverse;
+        Self {
+            ends,
+            over: ends.map(Wide::inverse),
+            square: (ends[0] + ends[1]) * (ends[0] - ends[1]) * 0.5,
         }
-        for row in (0..r).filter(|row| *row != k) {
-            let share = rows[row * width + k];
-            if share != 0.0 {
-                for column in k..width {
-                    rows[row * width + column] -= share * rows[k * width + column];
-                }
-            }
+    }
+
+    /// F (p_i² − p_o²)/2 x with the mole fraction x of a gas between both nodes.
+    #[inline(always)]
+    pub fn carried(&self, face: usize, gas: usize, ws: &RadialWorkspace) -> CarriedGas {
+        let g = ws.gases;
+        let weight = ws.held.share[face * g + gas];
+        let rest = -weight + 1.0;
+        let one = ws.now.pressure[face * g + gas] * self.over[0];
+        let other = ws.now.pressure[(face + 1) * g + gas] * self.over[1];
+        let fraction = weight * one + rest * other;
+        let flow = ws.held.flow[face];
+        let own_here = flow * self.square * weight * self.over[0];
+        let own_there = flow * self.square * rest * self.over[1];
+        CarriedGas {
+            flow: flow * self.square * fraction,
+            by_here: flow * self.ends[0] * fraction - own_here * one,
+            by_there: -(flow * self.ends[1] * fraction) - own_there * other,
+            own_here,
+            own_there,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use calcine_numerics::Lanes;
 use calcine_physics::sphere;
 
 /// How a sphere is cut into shells.
@@ -41,18 +42,18 @@ impl ShellGrid {
 /// ∂f/∂r = 2 r ∂f/∂(r²): a parabola, which is what steady conduction with a source has, is then exact, and a single shell has the
 /// resistance R/5 between its mean and its surface.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ShellGeometry {
+pub(super) struct ShellGeometry<const N: usize> {
     /// Radius of the outer face of each shell in m.
-    pub face: Vec<f64>,
+    pub face: Vec<Lanes<N>>,
     /// Area of that face in m².
-    pub area: Vec<f64>,
+    pub area: Vec<Lanes<N>>,
     /// Distance in m from the value of each shell to its outer face, as resistances count it.
-    pub outwards: Vec<f64>,
+    pub outwards: Vec<Lanes<N>>,
     /// Distance in m from that face to the value of the next shell; zero of the last one, whose face is the surface.
-    pub beyond: Vec<f64>,
+    pub beyond: Vec<Lanes<N>>,
 }
 
-impl ShellGeometry {
+impl<const N: usize> ShellGeometry<N> {
     /// Makes room for so many shells.
     pub fn resize(&mut self, shells: usize) {
         for list in [
@@ -61,40 +62,42 @@ impl ShellGeometry {
             &mut self.outwards,
             &mut self.beyond,
         ] {
-            list.resize(shells, 0.0);
+            list.resize(shells, Lanes::default());
         }
     }
 
     /// Finds it from the volumes of the shells in m³.
-    pub fn measure(&mut self, volumes: &[f64]) {
-        let (mut within, mut inner) = (0.0, 0.0_f64);
+    #[inline(always)]
+    pub fn measure(&mut self, volumes: &[Lanes<N>]) {
+        let (mut within, mut inner) = (Lanes::default(), Lanes::default());
         for (k, volume) in volumes.iter().enumerate() {
-            within += volume;
-            let outer: f64 = sphere::radius_of(within);
+            within += *volume;
+            let outer = within.map(sphere::radius_of);
             // 4 π/5 (b⁵ − a⁵) over the volume; of a thin shell between its faces without a difference.
             let square = mean_square(inner, outer);
             self.face[k] = outer;
-            self.area[k] = 4.0 * PI * outer * outer;
-            self.outwards[k] = (outer * outer - square) / (2.0 * outer);
-            self.beyond[k] = 0.0;
+            self.area[k] = outer * outer * (4.0 * PI);
+            self.outwards[k] = (outer * outer - square) / outer * 0.5;
+            self.beyond[k] = Lanes::default();
             if k > 0 {
-                self.beyond[k - 1] = (square - inner * inner) / (2.0 * inner);
+                self.beyond[k - 1] = (square - inner * inner) / inner * 0.5;
             }
             inner = outer;
         }
     }
 
     /// Radius of the surface in m.
-    pub fn radius(&self) -> f64 {
+    pub fn radius(&self) -> Lanes<N> {
         self.face.last().copied().unwrap_or_default()
     }
 }
 
 /// The mean of r² over a shell between two radii in m: 3/5 (b⁵ − a⁵)/(b³ − a³).
-fn mean_square(a: f64, b: f64) -> f64 {
-    let fifth = b.powi(4) + b.powi(3) * a + b * b * a * a + b * a.powi(3) + a.powi(4);
+#[inline(always)]
+fn mean_square<const N: usize>(a: Lanes<N>, b: Lanes<N>) -> Lanes<N> {
+    let fifth = (((a + b) * a + b * b) * a + b * b * b) * a + b * b * b * b;
     let third = b * b + b * a + a * a;
-    0.6 * fifth / third
+    fifth / third * 0.6
 }
 
 #[cfg(test)]
@@ -107,29 +110,30 @@ mod tests {
             shells: 20,
             grading: 4.0,
         };
-        let shares = grid.shares();
+        let shares: [f64; 20] = grid.shares().try_into().unwrap();
         assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-15);
-        let mut geometry = ShellGeometry::default();
+        let mut geometry = ShellGeometry::<1>::default();
         geometry.resize(20);
-        geometry.measure(&shares);
+        geometry.measure(&shares.map(|share| Lanes([share])));
         let thick = |k: usize| {
-            let inner = if k == 0 { 0.0 } else { geometry.face[k - 1] };
-            geometry.face[k] - inner
+            let inner = if k == 0 { 0.0 } else { geometry.face[k - 1][0] };
+            geometry.face[k][0] - inner
         };
         assert!((thick(0) / thick(19) - 4.0).abs() < 1e-9);
     }
 
     #[test]
     fn one_shell_has_the_resistance_of_a_fifth_of_its_radius() {
-        let mut geometry = ShellGeometry::default();
+        let mut geometry = ShellGeometry::<1>::default();
         geometry.resize(1);
-        geometry.measure(&[sphere::volume(3.0)]);
-        assert!((geometry.outwards[0] - 0.6).abs() < 1e-14);
+        geometry.measure(&[Lanes([sphere::volume(3.0)])]);
+        assert!((geometry.outwards[0][0] - 0.6).abs() < 1e-14);
     }
 
     #[test]
     fn the_mean_square_is_the_integral() {
         // ∫ r⁴ dr/∫ r² dr from 1 to 2: (31/5)/(7/3).
+        let mean_square = |a, b| mean_square(Lanes([a]), Lanes([b]))[0];
         assert!((mean_square(1.0, 2.0) - 31.0 / 5.0 * 3.0 / 7.0).abs() < 1e-14);
         assert!((mean_square(0.0, 1.0) - 0.6).abs() < 1e-15);
     }

@@ -54,8 +54,8 @@ pub struct Radial {
     tried: bool,
     last_span: f64,
     bodies: [RadialBodies; 2],
-    /// Steps and shells times steps of all attempts, and those that went by the end of a step alone.
-    work: [u64; 3],
+    /// Steps and shells times steps of all attempts, those that went by the end of a step alone, and rounds of Newton's method.
+    work: [u64; 4],
 }
 
 /// What others see of the particles.
@@ -105,7 +105,7 @@ impl Radial {
             tried: false,
             last_span: 0.0,
             bodies: Default::default(),
-            work: [0; 3],
+            work: [0; 4],
         })
     }
 
@@ -122,8 +122,8 @@ impl Radial {
     }
 
     /// Steps of all attempts so far, shells times steps, and how many of these went by the end of a step alone, which keeps amounts
-    /// positive and is of first order.
-    pub fn work(&self) -> [u64; 3] {
+    /// positive and is of first order; rounds of Newton's method.
+    pub fn work(&self) -> [u64; 4] {
         self.work
     }
 

@@ -4,7 +4,7 @@ use calcine_physics::pores::dusty_gas::MOST_GASES;
 use thiserror::Error;
 
 use super::material::{PoreGas, PorousSolid, RadialNumerics};
-use crate::reacting::{Rate, SolidChemistry};
+use crate::reacting::{Rate, Reaction, SolidChemistry};
 
 /// Why a material can have no shells.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -96,6 +96,11 @@ pub(super) struct RadialPhysics {
     pub gas_formation: Vec<f64>,
     /// By reaction the solid that is used up first.
     pub reactant: Vec<usize>,
+    /// Moles of each solid that each reaction makes, reaction by reaction.
+    pub solid_moles: Vec<f64>,
+    /// Moles of each gas that each reaction makes, reaction by reaction, and the orders of the gases on its way back.
+    pub gas_moles: Vec<f64>,
+    pub behind: Vec<Vec<(usize, f64)>>,
     /// Moles of gases that each reaction makes, in all.
     pub net_gas: Vec<f64>,
     /// Change of the pores' volume in m³/mol of each reaction.
@@ -169,10 +174,39 @@ impl RadialPhysics {
             parts.sum()
         });
         let opens = opens.collect();
+        let moles_of = |reaction: &Reaction, g: usize| -> f64 {
+            let own = reaction.gases.iter().filter(|one| one.0 == g);
+            own.map(|one| one.1).sum()
+        };
+        let (mut gas_moles, mut behind) = (Vec::new(), Vec::new());
+        let mut solid_moles = vec![0.0; chemistry.reactions.len() * chemistry.solids.len()];
+        for (j, reaction) in chemistry.reactions.iter().enumerate() {
+            for &(k, moles) in &reaction.solids {
+                solid_moles[j * chemistry.solids.len() + k] += moles;
+            }
+            gas_moles.extend((0..gases).map(|g| moles_of(reaction, g)));
+            let orders = match &reaction.rate {
+                Rate::Conversion { gases, .. } => &gases[..],
+                Rate::Power(law) => &law.gases,
+                _ => &[],
+            };
+            let sums = (0..gases).map(|g| {
+                let order: f64 = orders
+                    .iter()
+                    .filter(|one| one.0 == g)
+                    .map(|one| one.1)
+                    .sum();
+                (g, order + moles_of(reaction, g))
+            });
+            behind.push(sums.filter(|one| one.1 != 0.0).collect());
+        }
         let net = |gases: &[(usize, f64)]| gases.iter().map(|one| one.1).sum();
         let net_gas = chemistry.reactions.iter().map(|one| net(&one.gases));
         Ok(Self {
             net_gas: net_gas.collect(),
+            solid_moles,
+            gas_moles,
+            behind,
             shares: numerics.grid.shares(),
             least_volume: match &solid.size {
                 crate::reacting::SizeChange::Constant => 0.0,

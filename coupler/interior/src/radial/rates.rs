@@ -1,292 +1,357 @@
 //! Rates of reactions in a shell, with their derivatives (docs/theory.md, XDP-9).
 
-use calcine_numerics::{Dual, Number};
+use calcine_numerics::Dual;
 use calcine_physics::gas::GAS_CONSTANT;
+use calcine_physics::pores::dusty_gas::MOST_GASES;
+use calcine_physics::reaction::arrhenius::in_series;
 use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
-use calcine_physics::reaction::{Conversion, PowerLaw, conversion};
+use calcine_physics::reaction::{Arrhenius, Conversion, Equilibrium, PowerLaw, conversion};
 
-use super::physics::{MOST_SOLIDS, RadialPhysics};
+use super::physics::RadialPhysics;
+use super::workspace::{LANES, Wide};
 use crate::reacting::{Rate, Reaction};
 
 /// Share of the solids of a shell below which what a rate of an order below one uses counts as a trace, and what goes backwards
 /// needs as much of its products: x (2 − x) of the rate, x in traces, as [`crate::reacting::rates::TRACE`].
 pub(super) const TRACE: f64 = 1e-4;
 
-/// A shell, as rates see it.
+/// The shells of a place in all lanes, as rates see them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShellState<'a> {
     /// Temperature in K.
-    pub temperature: f64,
+    pub temperature: Wide,
     /// Partial pressures in Pa.
-    pub pressures: &'a [f64],
+    pub pressures: &'a [Wide],
     /// Amounts of solids in mol, and those of a particle in which nothing has reacted.
-    pub amounts: &'a [f64],
-    pub first: &'a [f64],
+    pub amounts: &'a [Wide],
+    pub first: &'a [Wide],
     /// Volume in m³.
-    pub volume: f64,
+    pub volume: Wide,
 }
 
 /// A rate in mol/s and its derivatives.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ShellRate {
-    pub value: f64,
+    pub value: Wide,
     /// By temperature, partial pressures and amounts of solids.
-    pub by_temperature: f64,
-    pub by_pressure: Vec<f64>,
-    pub by_amount: Vec<f64>,
+    pub by_temperature: Wide,
+    pub by_pressure: Vec<Wide>,
+    pub by_amount: Vec<Wide>,
+    /// Those by amounts where it goes backwards.
+    by_amount_back: Vec<Wide>,
+}
+
+impl ShellRate {
+    pub fn new(solids: usize, gases: usize) -> Self {
+        Self {
+            by_pressure: vec![Wide::default(); gases],
+            by_amount: vec![Wide::default(); solids],
+            by_amount_back: vec![Wide::default(); solids],
+            ..Self::default()
+        }
+    }
 }
 
 /// A product of powers of concentrations with its derivatives.
 struct GasPowers {
-    value: f64,
-    by_temperature: f64,
-    by_pressure: [f64; calcine_physics::pores::dusty_gas::MOST_GASES],
+    value: Wide,
+    by_temperature: Wide,
+    by_pressure: [Wide; MOST_GASES],
+}
+
+/// c^n and its slope; nothing reacts of what is not there.
+#[inline(always)]
+fn power(c: Wide, order: f64) -> [Wide; 2] {
+    if order == 1.0 {
+        return [c, Wide::all(1.0)];
+    }
+    if order == 0.0 {
+        return [Wide::all(1.0), Wide::default()];
+    }
+    let value = c.map(|c| if c == 0.0 { 0.0 } else { c.powf(order) });
+    let slope = value * order / c;
+    [value, c.if_positive(slope, Wide::default())]
 }
 
 impl GasPowers {
-    /// Π c_g^n_g of c = p/(R T); nothing reacts of what is not there.
-    fn of(orders: impl Iterator<Item = (usize, f64)> + Clone, state: &ShellState<'_>) -> Self {
-        let molar = 1.0 / (GAS_CONSTANT * state.temperature);
+    /// Π c_g^n_g of c = p/(R T), each gas once.
+    #[inline(always)]
+    fn of(orders: &[(usize, f64)], state: &ShellState<'_>) -> Self {
+        let over = state.temperature.inverse();
+        let molar = over * (1.0 / GAS_CONSTANT);
         let mut made = Self {
-            value: 1.0,
-            by_temperature: 0.0,
-            by_pressure: [0.0; calcine_physics::pores::dusty_gas::MOST_GASES],
+            value: Wide::all(1.0),
+            by_temperature: Wide::default(),
+            by_pressure: [Wide::default(); MOST_GASES],
         };
-        let power = |g: usize, order: f64| {
-            let c = state.pressures[g].max(0.0) * molar;
-            if order == 0.0 {
-                [1.0, 0.0]
-            } else if order == 1.0 {
-                [c, 1.0]
-            } else if c == 0.0 {
-                [0.0, 0.0]
-            } else {
-                let value = c.powf(order);
-                [value, order * value / c]
+        for (k, &(g, order)) in orders.iter().enumerate() {
+            let [own, slope] = power(state.pressures[g].positive() * molar, order);
+            made.value = made.value * own;
+            let mut rest = slope * molar;
+            for (other, &(g, order)) in orders.iter().enumerate() {
+                if other != k {
+                    rest = rest * power(state.pressures[g].positive() * molar, order)[0];
+                }
             }
-        };
-        for (k, (g, order)) in orders.clone().enumerate() {
-            made.value *= power(g, order)[0];
-            let others = orders.clone().enumerate().filter(|(other, _)| *other != k);
-            let rest: f64 = others.map(|(_, (g, order))| power(g, order)[0]).product();
-            made.by_pressure[g] += rest * power(g, order)[1] * molar;
+            made.by_pressure[g] += rest;
         }
-        for (g, order) in orders {
-            if order != 0.0 {
-                made.by_temperature -=
-                    made.by_pressure[g] * state.pressures[g].max(0.0) / state.temperature;
-            }
+        for &(g, _) in orders {
+            made.by_temperature -= made.by_pressure[g] * state.pressures[g].positive() * over;
         }
         made
     }
 }
 
+/// k of one constant, or of two in series, with its slope.
+#[inline(always)]
+fn constant(first: &Arrhenius, second: Option<&Arrhenius>, temperature: Wide) -> [Wide; 2] {
+    if second.is_none() {
+        return first.lanes(temperature);
+    }
+    let mut all = [Wide::default(); 2];
+    for lane in 0..LANES {
+        let own = in_series(first, second, Dual::<1>::along(temperature[lane], 0));
+        (all[0][lane], all[1][lane]) = (own.value, own.slope[0]);
+    }
+    all
+}
+
 impl RadialPhysics {
-    /// The rate of a reaction in a shell.
+    /// The rates of a reaction in shells.
+    #[inline(always)]
     pub fn rate(&self, index: usize, state: &ShellState<'_>, out: &mut ShellRate) {
         let reaction = &self.chemistry.reactions[index];
-        out.by_pressure.clear();
-        out.by_pressure.resize(self.gases(), 0.0);
-        out.by_amount.clear();
-        out.by_amount.resize(self.solids(), 0.0);
         let t = state.temperature;
-        let back = reaction.equilibrium.inverse(Dual::<1>::along(t, 0));
-        let (rate_constant, orders): (Dual<1>, &[(usize, f64)]) = match &reaction.rate {
+        let ([k, k_slope], orders): ([Wide; 2], &[(usize, f64)]) = match &reaction.rate {
             Rate::Grains { rate_constant, .. } => {
-                return self.grains(
-                    index,
-                    (rate_constant.of(Dual::along(t, 0)), back),
-                    state,
-                    out,
-                );
+                return self.grains(index, rate_constant.lanes(t), state, out);
             }
             Rate::Conversion {
                 rate_constant,
                 gases,
                 ..
-            } => (rate_constant.of(Dual::along(t, 0)), gases),
-            Rate::Power(law) => (
-                law.without(
-                    None,
-                    Dual::along(t, 0),
-                    |_| Dual::constant(1.0),
-                    |_| Dual::constant(1.0),
-                )
-                .0,
-                &law.gases,
-            ),
+            } => (constant(rate_constant, None, t), gases),
+            Rate::Power(law) => {
+                let second = law.in_series.as_ref();
+                (constant(&law.rate_constant, second, t), &law.gases)
+            }
             Rate::Core { .. } | Rate::Evaporation(_) | Rate::Devolatilisation(_) => {
-                (Dual::constant(0.0), &[])
+                (Default::default(), &[])
             }
         };
-        let forth = GasPowers::of(orders.iter().copied(), state);
+        let forth = GasPowers::of(orders, state);
         let mut drive = [forth.value, forth.by_temperature];
-        out.by_pressure[..].copy_from_slice(&forth.by_pressure[..self.gases()]);
-        if back.value > 0.0 {
+        let count = out.by_pressure.len();
+        out.by_pressure.copy_from_slice(&forth.by_pressure[..count]);
+        let reverse = reaction.equilibrium != Equilibrium::OneWay;
+        if reverse {
+            let [back, logarithmic] = reaction.equilibrium.inverse_lanes(t);
             let net = self.net_gas[index];
-            let standard = STANDARD_PRESSURE / (GAS_CONSTANT * t);
-            let both = orders.iter().copied().chain(reaction.gases.iter().copied());
-            let gases = 0..self.gases();
-            let sums = gases.filter_map(|g| {
-                let order: f64 = both.clone().filter(|one| one.0 == g).map(|one| one.1).sum();
-                (order != 0.0).then_some((g, order))
-            });
-            let behind = GasPowers::of(sums, state);
-            let scale = back.value * standard.powf(-net);
-            let by_temperature = scale * (back.slope[0] / back.value + net / t);
+            let standard = (t * GAS_CONSTANT).inverse() * STANDARD_PRESSURE;
+            let behind = GasPowers::of(&self.behind[index], state);
+            let scale = match net {
+                0.0 => back,
+                1.0 => back / standard,
+                -1.0 => back * standard,
+                _ => back * standard.map(|c| c.powf(-net)),
+            };
+            let by_temperature = scale * (logarithmic + t.inverse() * net);
             drive[0] -= scale * behind.value;
             drive[1] -= by_temperature * behind.value + scale * behind.by_temperature;
             for (own, by) in out.by_pressure.iter_mut().zip(behind.by_pressure) {
                 *own -= scale * by;
             }
         }
+        let backwards = reverse && drive[0].any(|drive| drive < 0.0);
         let solid = match &reaction.rate {
-            Rate::Power(law) => {
-                self.power(reaction, law, state, drive[0] < 0.0, &mut out.by_amount)
-            }
+            Rate::Power(law) => self.power(reaction, law, state, (drive[0], backwards), out),
             Rate::Conversion { conversion, .. } => self.converted(
                 (index, reaction),
                 conversion,
                 state,
-                drive[0] < 0.0,
-                &mut out.by_amount,
+                (drive[0], backwards),
+                out,
             ),
-            _ => 0.0,
+            _ => Wide::default(),
         };
-        let [k, k_slope] = [rate_constant.value, rate_constant.slope[0]];
         out.value = k * solid * drive[0];
         out.by_temperature = solid * (k_slope * drive[0] + k * drive[1]);
-        out.by_pressure.iter_mut().for_each(|by| *by *= k * solid);
-        out.by_amount.iter_mut().for_each(|by| *by *= k * drive[0]);
+        let (by_pressure, by_amount) = (k * solid, k * drive[0]);
+        for by in &mut out.by_pressure {
+            *by = *by * by_pressure;
+        }
+        for by in &mut out.by_amount {
+            *by = *by * by_amount;
+        }
     }
 
     /// k S (p_eq − p).
+    #[inline(always)]
     fn grains(
         &self,
         index: usize,
-        (rate_constant, back): (Dual<1>, Dual<1>),
+        rate_constant: [Wide; 2],
         state: &ShellState<'_>,
         out: &mut ShellRate,
     ) {
         let reaction = &self.chemistry.reactions[index];
+        out.by_pressure.fill(Wide::default());
         let (Rate::Grains { grains, .. }, [(gas, moles)]) = (&reaction.rate, &reaction.gases[..])
         else {
             return;
         };
         let solid = self.reactant[index];
-        let surface = grains.at_start(state.first[solid] * self.true_volume[solid]);
+        let [back, logarithmic] = reaction.equilibrium.inverse_lanes(state.temperature);
+        let first = state.first[solid];
+        let surface = (first * self.true_volume[solid]).map(|volume| grains.at_start(volume));
         // K = (p/p°)^ν.
-        let at_rest = STANDARD_PRESSURE * back.value.powf(-1.0 / moles);
-        let at_rest_slope = -at_rest / moles * back.slope[0] / back.value;
+        let at_rest = match *moles {
+            1.0 => back.inverse(),
+            moles => back.map(|back| back.powf(-1.0 / moles)),
+        } * STANDARD_PRESSURE;
+        let at_rest_slope = at_rest * logarithmic * (-1.0 / moles);
         let lacking = at_rest - state.pressures[*gas];
-        let left = state.amounts[solid] / state.first[solid].max(f64::MIN_POSITIVE);
-        let [share, by_left] = if lacking < 0.0 {
-            [self.products(reaction, state, &mut out.by_amount), 0.0]
-        } else {
-            let [value, slope] =
-                Conversion::ContractingVolume(conversion::ContractingVolume).of(left);
-            [value / 3.0, slope / 3.0]
-        };
-        if lacking >= 0.0 {
-            out.by_amount[solid] = by_left / state.first[solid].max(f64::MIN_POSITIVE);
+        let over = first.max(Wide::all(f64::MIN_POSITIVE)).inverse();
+        let law = Conversion::ContractingVolume(conversion::ContractingVolume);
+        let left = state.amounts[solid] * over;
+        let mut share = Wide::default();
+        out.by_amount.fill(Wide::default());
+        for lane in 0..LANES {
+            let [value, slope] = law.of(left[lane]);
+            share[lane] = value / 3.0;
+            out.by_amount[solid][lane] = slope / 3.0 * over[lane];
         }
-        let [k, k_slope] = [
-            rate_constant.value * surface,
-            rate_constant.slope[0] * surface,
-        ];
+        if lacking.any(|lacking| lacking < 0.0) {
+            let there = self.products(reaction, state, &mut out.by_amount_back);
+            let forth = Wide::default();
+            share = lacking.if_below(forth, there, share);
+            for (own, back) in out.by_amount.iter_mut().zip(&out.by_amount_back) {
+                *own = lacking.if_below(forth, *back, *own);
+            }
+        }
+        let [k, k_slope] = rate_constant.map(|own| own * surface);
         out.value = k * share * lacking;
         out.by_temperature = share * (k_slope * lacking + k * at_rest_slope);
-        out.by_pressure[*gas] = -k * share;
-        out.by_amount.iter_mut().for_each(|by| *by *= k * lacking);
+        out.by_pressure[*gas] = -(k * share);
+        for by in &mut out.by_amount {
+            *by = *by * k * lacking;
+        }
     }
 
     /// n₀ f(w) in mol; backwards n₀ as far as the products are there.
+    #[inline(always)]
     fn converted(
         &self,
         (index, reaction): (usize, &Reaction),
         conversion: &Conversion,
         state: &ShellState<'_>,
-        backwards: bool,
-        slopes: &mut [f64],
-    ) -> f64 {
+        (drive, backwards): (Wide, bool),
+        out: &mut ShellRate,
+    ) -> Wide {
         let solid = self.reactant[index];
         let first = state.first[solid];
+        out.by_amount.fill(Wide::default());
+        let mut all = Wide::default();
+        for lane in 0..LANES {
+            let (amount, first) = (state.amounts[solid][lane], first[lane]);
+            [all[lane], out.by_amount[solid][lane]] = if first <= 0.0 {
+                // A solid that others make goes by what there is of it.
+                [amount, 1.0]
+            } else {
+                let [value, slope] = conversion.of(amount / first);
+                [first * value, slope]
+            };
+        }
         if backwards {
-            let there = self.products(reaction, state, slopes);
-            slopes.iter_mut().for_each(|slope| *slope *= first);
-            return first * there;
+            let there = self.products(reaction, state, &mut out.by_amount_back);
+            let forth = Wide::default();
+            all = drive.if_below(forth, first * there, all);
+            for (own, back) in out.by_amount.iter_mut().zip(&out.by_amount_back) {
+                *own = drive.if_below(forth, *back * first, *own);
+            }
         }
-        if first <= 0.0 {
-            // A solid that others make goes by what there is of it.
-            slopes[solid] = 1.0;
-            return state.amounts[solid];
-        }
-        let [value, slope] = conversion.of(state.amounts[solid] / first);
-        slopes[solid] = slope;
-        first * value
+        all
     }
 
     /// V Π c_s^m in mol, times what of the solids that are used is there.
+    #[inline(always)]
     fn power(
         &self,
         reaction: &Reaction,
         law: &PowerLaw,
         state: &ShellState<'_>,
-        backwards: bool,
-        slopes: &mut [f64],
-    ) -> f64 {
-        let trace = TRACE * state.first.iter().sum::<f64>();
+        (drive, backwards): (Wide, bool),
+        out: &mut ShellRate,
+    ) -> Wide {
         let order_in = |s: usize| {
             let found = law.solids.iter().find(|one| one.0 == s);
             found.map_or(0.0, |one| one.1)
         };
         let mut value = state.volume;
-        let mut logarithms = [0.0; MOST_SOLIDS];
-        let used = reaction
-            .solids
-            .iter()
-            .filter(|one| one.1 < 0.0)
-            .map(|one| one.0);
-        let others = law.solids.iter().map(|one| one.0);
-        let others =
-            others.filter(|s| !reaction.solids.iter().any(|one| one.0 == *s && one.1 < 0.0));
-        for s in used.chain(others) {
+        let slopes = &mut out.by_amount;
+        slopes.fill(Wide::default());
+        let trace = trace(state);
+        let is_used = |s: usize| reaction.solids.iter().any(|one| one.0 == s && one.1 < 0.0);
+        let used = reaction.solids.iter().filter(|one| one.1 < 0.0);
+        let others = law.solids.iter().filter(|one| !is_used(one.0));
+        // Slopes of the logarithm at first.
+        for &(s, _) in used.chain(others) {
             let (n, order) = (state.amounts[s], order_in(s));
-            let [factor, slope] = ends(n, order, trace, state.volume);
-            value *= factor;
-            if let Some(own) = logarithms.get_mut(s) {
-                *own = if factor == 0.0 { 0.0 } else { slope / factor };
+            if order == 1.0 {
+                value = value * (n.positive() / state.volume);
+                let own = n.positive().inverse();
+                slopes[s] = n.if_positive(own, Wide::default());
+                continue;
+            }
+            for lane in 0..LANES {
+                let [factor, slope] = ends(n[lane], order, trace[lane], state.volume[lane]);
+                value[lane] *= factor;
+                slopes[s][lane] = if factor == 0.0 { 0.0 } else { slope / factor };
             }
         }
-        for (slope, own) in slopes.iter_mut().zip(logarithms) {
-            *slope = value * own;
+        for slope in slopes.iter_mut() {
+            *slope = *slope * value;
         }
         if backwards {
-            let mut by = [0.0; MOST_SOLIDS];
-            let by = &mut by[..slopes.len()];
+            let by = &mut out.by_amount_back;
             let there = self.products(reaction, state, by);
-            for (slope, by) in slopes.iter_mut().zip(&*by) {
-                *slope = *slope * there + value * by;
+            let forth = Wide::default();
+            for (slope, by) in slopes.iter_mut().zip(by) {
+                *slope = drive.if_below(forth, *slope * there + value * *by, *slope);
             }
-            value *= there;
+            value = drive.if_below(forth, value * there, value);
         }
         value
     }
 
     /// How far the solids that a reaction makes are there, and its derivatives.
-    fn products(&self, reaction: &Reaction, state: &ShellState<'_>, slopes: &mut [f64]) -> f64 {
-        let trace = TRACE * state.first.iter().sum::<f64>();
-        let mut all = 1.0;
-        slopes.fill(0.0);
+    #[inline(always)]
+    fn products(&self, reaction: &Reaction, state: &ShellState<'_>, slopes: &mut [Wide]) -> Wide {
+        let trace = trace(state);
+        let mut all = Wide::all(1.0);
+        slopes.fill(Wide::default());
         for &(s, _) in reaction.solids.iter().filter(|one| one.1 > 0.0) {
-            let x = (state.amounts[s] / trace).clamp(0.0, 1.0);
-            let [value, slope] = [x * (2.0 - x), 2.0 * (1.0 - x) / trace];
-            slopes.iter_mut().for_each(|by| *by *= value);
+            let x = (state.amounts[s] / trace).positive().min(Wide::all(1.0));
+            let rest = -x + 1.0;
+            let [value, slope] = [x * (rest + 1.0), rest / trace * 2.0];
+            for by in slopes.iter_mut() {
+                *by = *by * value;
+            }
             slopes[s] += all * slope;
-            all *= value;
+            all = all * value;
         }
         all
     }
+}
+
+/// Amount in mol below which a solid counts as a trace.
+#[inline(always)]
+fn trace(state: &ShellState<'_>) -> Wide {
+    let mut sum = Wide::default();
+    for first in state.first {
+        sum += *first;
+    }
+    sum * TRACE
 }
 
 /// The factor of a solid in a power law of an order, (n/V)^m, and its slope; below a trace it ends where nothing is left.

@@ -1,16 +1,19 @@
 //! One window of particles with shells, with the gas about them held.
 
-use calcine_numerics::batch::each_row;
+use calcine_numerics::batch::each_chunk;
+use calcine_physics::pores::dusty_gas::MOST_GASES;
 
 use super::Radial;
-use super::attempt::{RadialOutcome, RadialStalled};
+use super::attempt::{RadialCourse, RadialOutcome, RadialStalled};
 use super::material::ShellResolution;
 use super::state::{RowLayout, TellLayout};
-use super::transport::Outside;
-use super::workspace::RadialWorkspace;
+use super::transport::{Outside, OutsideLanes};
+use super::workspace::{LANES, RadialWorkspace, Wide};
 use crate::error::ModelError;
 use crate::model::Surroundings;
-use crate::reacting::passage::ParticleSurroundings;
+
+/// Particles that a thread takes at a time.
+const CHUNK: usize = 8 * LANES;
 
 impl Radial {
     /// Follows every particle over a process span in s, each by itself, with the network's heat in W.
@@ -23,14 +26,25 @@ impl Radial {
         let width = self.tell.end();
         let mut rows = std::mem::take(&mut self.attempt);
         rows.resize(self.count() * width, 0.0);
-        let done = each_row(
+        let done = each_chunk(
             &mut rows,
-            width,
+            (width, CHUNK),
             || RadialScratch::new(self),
-            |p, row, scratch| {
-                let heat = network.get(p).copied().unwrap_or_default();
-                self.react_one(p, around, (span, heat), row, scratch)
-                    .map_err(|cause| (p, cause))
+            |from, rows, scratch| {
+                let seen = SeenByChunk {
+                    around,
+                    span,
+                    network,
+                    from,
+                };
+                let RadialScratch { all, one } = scratch;
+                let all = self.react_some(&seen, rows, all);
+                let one = match self.layout.shells {
+                    1 => None,
+                    _ => self.react_some(&seen, rows, one),
+                };
+                let failed = [all, one].into_iter().flatten();
+                failed.min_by_key(|(row, _)| *row)
             },
         );
         let last = self.layout.shells as u64;
@@ -41,6 +55,7 @@ impl Radial {
             self.work[0] += steps;
             self.work[1] += steps * shells;
             self.work[2] += tell[TellLayout::FALLEN] as u64;
+            self.work[3] += tell[TellLayout::ROUNDS] as u64;
         }
         self.attempt = rows;
         self.tried = true;
@@ -51,85 +66,159 @@ impl Radial {
         })
     }
 
-    /// One particle; a function of its committed state and its surroundings.
-    fn react_one(
+    /// The particles of a chunk that have as many shells as the workspace: one in each lane, the next one where one is done. What each
+    /// comes to is a function of its committed state and its surroundings. The first that cannot be followed, if any.
+    fn react_some(
         &self,
-        p: usize,
-        around: &Surroundings<'_>,
-        (span, heat): (f64, f64),
-        row: &mut [f64],
-        scratch: &mut RadialScratch,
-    ) -> Result<(), RadialStalled> {
-        let layout = self.layout;
-        let committed = self.row(p);
-        row[..committed.len()].copy_from_slice(committed);
-        let shells = self.shells_of(committed);
-        let g = layout.gases;
-        scratch.see(self, p, around);
-        let RadialScratch {
-            all,
-            one,
-            outcome,
+        seen: &SeenByChunk<'_>,
+        rows: &mut [f64],
+        ws: &mut RadialWorkspace,
+    ) -> Option<(usize, RadialStalled)> {
+        let width = self.tell.end();
+        let count = rows.len() / width;
+        let shells = ws.shells;
+        let mut waiting = (0..count).filter(|k| self.shells_of(self.row(seen.from + k)) == shells);
+        let mut outside: OutsideLanes<'_> = [None; LANES];
+        let mut courses: [Option<(usize, RadialCourse)>; LANES] = Default::default();
+        let mut failed: Option<(usize, RadialStalled)> = None;
+        loop {
+            let mut busy = false;
+            for lane in 0..LANES {
+                if courses[lane].is_none()
+                    && let Some(k) = waiting.next()
+                {
+                    let about = self.outside(seen.from + k, seen);
+                    self.load_lane(seen.from + k, lane, ws);
+                    let course = self.physics.send(lane, &about, seen.span, ws);
+                    (outside[lane], courses[lane]) = (Some(about), Some((k, course)));
+                }
+                busy |= courses[lane].is_some();
+            }
+            if !busy {
+                return failed;
+            }
+            self.physics.round(&outside, ws);
+            for lane in 0..LANES {
+                let (Some(about), Some((k, course))) = (&outside[lane], &mut courses[lane]) else {
+                    continue;
+                };
+                let Some(done) = self.physics.advance(lane, about, course, ws) else {
+                    continue;
+                };
+                let k = *k;
+                match done {
+                    Ok(()) => {
+                        let out = course.clone().end(lane, ws);
+                        let row = &mut rows[k * width..(k + 1) * width];
+                        self.store_lane((seen.from + k, lane), seen, (about, &out, ws), row);
+                    }
+                    Err(cause) => {
+                        let row = seen.from + k;
+                        if failed.is_none_or(|(first, _)| row < first) {
+                            failed = Some((row, cause));
+                        }
+                    }
+                }
+                (outside[lane], courses[lane]) = (None, None);
+            }
+        }
+    }
+
+    /// What acts on a particle.
+    fn outside<'a>(&self, p: usize, seen: &SeenByChunk<'a>) -> Outside<'a> {
+        let SeenByChunk {
+            around,
+            span,
+            network,
+            ..
+        } = *seen;
+        let g = self.layout.gases;
+        let mut fractions = [0.0; MOST_GASES];
+        if let Some(gas) = &self.physics.chemistry.gas {
+            let composition = &around.composition[p * g..(p + 1) * g];
+            gas.mole_fractions(composition, &mut fractions[..g]);
+            fractions.iter_mut().for_each(|x| *x = x.max(0.0));
+        }
+        let heat = network.get(p).copied().unwrap_or_default();
+        Outside {
+            temperature: around.temperature[p],
+            pressure: around.pressure.get(p).copied().unwrap_or_default(),
             fractions,
-        } = scratch;
-        let ws = if shells == 1 { one } else { all };
-        ws.start.temperature[shells] = committed[RowLayout::SURFACE];
-        let (t, n, gas) = (layout.temperatures(), layout.amounts(), layout.gas());
-        ws.start.temperature[..shells].copy_from_slice(&committed[t.start..t.start + shells]);
-        let s = layout.solids;
-        ws.start
-            .amount
-            .copy_from_slice(&committed[n.start..n.start + shells * s]);
-        ws.start_gas
-            .copy_from_slice(&committed[gas.start..gas.start + shells * g]);
+            film: around.film.get(p * g..(p + 1) * g).unwrap_or_default(),
+            theory: around.theory,
+            radius: around.radius.get(p).copied().unwrap_or_default(),
+            conductance: around.conductance[p],
+            heat: heat + self.row(p)[self.layout.owed_heat()] / span,
+        }
+    }
+
+    /// Puts the committed state of a particle into a lane.
+    fn load_lane(&self, p: usize, lane: usize, ws: &mut RadialWorkspace) {
+        let (layout, committed) = (self.layout, self.row(p));
+        let (shells, s) = (ws.shells, layout.solids);
+        let take = |to: &mut [Wide], from: usize| {
+            for (to, value) in to.iter_mut().zip(&committed[from..]) {
+                to[lane] = *value;
+            }
+        };
+        take(
+            &mut ws.start.temperature[..shells],
+            layout.temperatures().start,
+        );
+        ws.start.temperature[shells][lane] = committed[RowLayout::SURFACE];
+        take(&mut ws.start.amount, layout.amounts().start);
+        take(&mut ws.start_gas, layout.gas().start);
         let first_mass = committed[layout.first_mass()];
         for shell in 0..shells {
             let share = self.share(committed, shell);
-            ws.first_volume[shell] = share * committed[layout.first_volume()];
+            ws.first_volume[shell][lane] = share * committed[layout.first_volume()];
             for (k, per_mass) in self.composition.iter().enumerate() {
-                ws.unreacted[shell * s + k] = share * per_mass * first_mass;
+                ws.unreacted[shell * s + k][lane] = share * per_mass * first_mass;
             }
         }
-        let radius = around.radius.get(p).copied().unwrap_or_default();
-        let outside = Outside {
-            around: ParticleSurroundings {
-                temperature: around.temperature[p],
-                pressure: around.pressure.get(p).copied().unwrap_or_default(),
-                fractions,
-                film: around.film.get(p * g..(p + 1) * g).unwrap_or_default(),
-                theory: around.theory,
-                radius,
-                size: &self.physics.solid.size,
-            },
-            conductance: around.conductance[p],
-            heat: heat + committed[layout.owed_heat()] / span,
+    }
+
+    /// Puts what a lane came to into the row of its particle's attempt.
+    fn store_lane(
+        &self,
+        (p, lane): (usize, usize),
+        seen: &SeenByChunk<'_>,
+        (outside, outcome, ws): (&Outside<'_>, &RadialOutcome, &RadialWorkspace),
+        row: &mut [f64],
+    ) {
+        let (layout, shells, g) = (self.layout, ws.shells, ws.gases);
+        let committed = self.row(p);
+        row[..committed.len()].copy_from_slice(committed);
+        let mut put = |from: &[Wide], to: usize| {
+            for (to, value) in row[to..].iter_mut().zip(from) {
+                *to = value[lane];
+            }
         };
-        self.physics.follow(&outside, span, ws, outcome)?;
-        row[RowLayout::SURFACE] = ws.start.temperature[shells];
-        row[t.start..t.start + shells].copy_from_slice(&ws.start.temperature[..shells]);
-        row[n.start..n.start + shells * s].copy_from_slice(&ws.start.amount);
-        row[gas.start..gas.start + shells * g].copy_from_slice(&ws.start_gas);
+        put(&ws.start.temperature[shells..], RowLayout::SURFACE);
+        put(&ws.start.temperature[..shells], layout.temperatures().start);
+        put(&ws.start.amount, layout.amounts().start);
+        put(&ws.start_gas, layout.gas().start);
         let hidden = match self.physics.numerics.resolution {
-            ShellResolution::Beyond { .. } if shells == 1 => hidden(ws, &outside),
+            ShellResolution::Beyond { .. } if shells == 1 => hidden(lane, ws, outside),
             _ => [0.0; 2],
         };
         let flow = self.tell.flow();
-        row[flow].copy_from_slice(&outcome.flow);
+        row[flow].copy_from_slice(&outcome.flow[..g]);
         let slope = self.tell.slope();
-        row[slope].copy_from_slice(&outcome.flow_slope);
+        row[slope].copy_from_slice(&outcome.flow_slope[..g]);
         let tell = &mut row[self.tell.from..];
         tell[TellLayout::HEAT] = outcome.heat;
         tell[TellLayout::HEAT_SLOPE] = outcome.heat_slope;
         tell[TellLayout::SURFACE_SLOPE] = outcome.surface_slope;
         tell[TellLayout::SURFACE_BY_HEAT] = outcome.surface_by_heat;
         tell[TellLayout::RELEASED] = outcome.released;
-        tell[TellLayout::GAS_TEMPERATURE] = around.temperature[p];
-        tell[TellLayout::NETWORK] = heat;
+        tell[TellLayout::GAS_TEMPERATURE] = outside.temperature;
+        tell[TellLayout::NETWORK] = seen.network.get(p).copied().unwrap_or_default();
         tell[TellLayout::STEPS] = outcome.steps as f64;
         tell[TellLayout::FALLEN] = outcome.fallen_back as f64;
+        tell[TellLayout::ROUNDS] = outcome.rounds as f64;
         tell[TellLayout::HIDDEN] = hidden[0];
         tell[TellLayout::HIDDEN + 1] = hidden[1];
-        Ok(())
     }
 
     /// Gives a particle of one shell all of them, each as the one was.
@@ -156,27 +245,35 @@ impl Radial {
 
 /// What one shell hides: the difference in K between centre and surface of a parabola with the heat that passes the surface, and that of
 /// the partial pressure of a gas over the pressure, with the flow that does. The mean of a parabola lies 2/5 of it above the surface.
-fn hidden(ws: &RadialWorkspace, outside: &Outside<'_>) -> [f64; 2] {
+fn hidden(lane: usize, ws: &RadialWorkspace, outside: &Outside<'_>) -> [f64; 2] {
     const WHOLE: f64 = 2.5;
-    let now = &ws.now;
-    let kelvin = WHOLE * (now.temperature[0] - now.temperature[1]).abs();
+    let now = &ws.start;
+    let kelvin = WHOLE * (now.temperature[0][lane] - now.temperature[1][lane]).abs();
     let g = ws.gases;
-    let drops = (0..g).map(|k| (now.pressure[k] - now.pressure[g + k]).abs());
+    let drops = (0..g).map(|k| (now.pressure[k][lane] - now.pressure[g + k][lane]).abs());
     let most = drops.fold(0.0, f64::max);
     let share = if g > 0 {
-        WHOLE * most / outside.around.pressure
+        WHOLE * most / outside.pressure
     } else {
         0.0
     };
     [kelvin, share]
 }
 
+/// What the particles of a chunk see.
+#[derive(Clone, Copy)]
+struct SeenByChunk<'a> {
+    around: &'a Surroundings<'a>,
+    span: f64,
+    network: &'a [f64],
+    /// The first of them.
+    from: usize,
+}
+
 /// Memory of a thread.
 struct RadialScratch {
     all: RadialWorkspace,
     one: RadialWorkspace,
-    outcome: RadialOutcome,
-    fractions: Vec<f64>,
 }
 
 impl RadialScratch {
@@ -193,17 +290,6 @@ impl RadialScratch {
         Self {
             all: sizes(of.layout.shells),
             one: sizes(1),
-            outcome: RadialOutcome::default(),
-            fractions: vec![0.0; of.layout.gases],
-        }
-    }
-
-    /// Takes up the mole fractions about a particle.
-    fn see(&mut self, of: &Radial, p: usize, around: &Surroundings<'_>) {
-        if let Some(gas) = &of.physics.chemistry.gas {
-            let g = self.fractions.len();
-            gas.mole_fractions(&around.composition[p * g..(p + 1) * g], &mut self.fractions);
-            self.fractions.iter_mut().for_each(|x| *x = x.max(0.0));
         }
     }
 }

@@ -1,170 +1,170 @@
-//! One implicit stage: Newton's method on the equations of a particle.
+//! Rounds of Newton's method on the equations of the stages at which particles side by side are.
 
-use calcine_numerics::LinearAlgebra;
+use calcine_numerics::lanes::vectorised;
 use calcine_physics::gas::GAS_CONSTANT;
 
 use super::physics::RadialPhysics;
-use super::transport::Outside;
-use super::workspace::RadialWorkspace;
+use super::transport::{ANY, OutsideLanes};
+use super::workspace::{RadialWorkspace, Wide};
 
-/// Rounds of Newton's method at most, and of those the ones that take coefficients anew: then they are held, so that the
-/// last rounds square what is left.
-const ROUNDS: usize = 40;
-const UPDATES: usize = 4;
-/// Changes that end them, relative to temperature, pressure and the amount of solids.
-const CLOSE: f64 = 1e-8;
 /// Share of an amount or a pressure that a round leaves at least, and share of a temperature by which it moves at most.
 const LEFT_AMOUNT: f64 = 1e-2;
 const LEFT_PRESSURE: f64 = 0.1;
 const MOST_WARMED: f64 = 0.25;
 
 impl RadialPhysics {
-    /// Solves a stage from its base and an iterate, whose flows count over `length` in s; false where no solution was found.
-    pub fn solve(&self, outside: &Outside<'_>, length: f64, ws: &mut RadialWorkspace) -> bool {
-        ws.now.extent.fill(0.0);
-        ws.now.amount.copy_from_slice(&ws.base.amount);
-        for round in 0..ROUNDS {
-            if round < UPDATES && !self.coefficients(outside, ws) {
-                return false;
-            }
-            if !self.measure(ws) {
-                return false;
-            }
-            self.assemble(outside, length, ws);
-            ws.entries.iter_mut().for_each(|value| *value = -*value);
-            if !ws.algebra.factorise(0.0, &ws.entries) {
-                return false;
-            }
-            ws.algebra.solve(&mut ws.right);
-            let moved = self.update(outside.around.pressure, ws);
-            if !moved.is_finite() {
-                return false;
-            }
-            if moved <= CLOSE {
-                self.measure(ws);
-                self.properties(ws);
-                self.flows(outside, ws);
-                return true;
-            }
+    /// One round of Newton's method in each lane, at its own stage: from the iterate `now` and the base to the next iterate. What it
+    /// asked for is left in `ws.right` and `ws.moved`.
+    pub fn round(&self, outside: &OutsideLanes<'_>, ws: &mut RadialWorkspace) {
+        vectorised(
+            #[inline(always)]
+            || match self.gases() {
+                0 => self.round_of::<0, 1>(outside, ws),
+                1 => self.round_of::<1, 2>(outside, ws),
+                2 => self.round_of::<2, 3>(outside, ws),
+                3 => self.round_of::<3, 4>(outside, ws),
+                _ => self.round_of::<ANY, 0>(outside, ws),
+            },
+        );
+    }
+
+    /// The same, compiled for a number of gases and the order of the blocks that follows.
+    #[inline(always)]
+    fn round_of<const G: usize, const B: usize>(
+        &self,
+        outside: &OutsideLanes<'_>,
+        ws: &mut RadialWorkspace,
+    ) {
+        self.measure(ws);
+        if ws.updating.any(|updating| updating > 0.0) {
+            self.coefficients::<G>(outside, ws);
         }
-        false
+        self.properties::<G>(ws);
+        self.assemble::<G>(outside, ws);
+        ws.algebra.solve::<B>(&ws.entries, &mut ws.right);
+        self.update::<G>(outside, ws);
     }
 
     /// Takes the step of a round; the largest relative change that it asked for.
-    fn update(&self, pressure: f64, ws: &mut RadialWorkspace) -> f64 {
-        let (n, s, g, r) = (ws.shells, ws.solids, ws.gases, ws.reactions);
+    #[inline(always)]
+    fn update<const G: usize>(&self, outside: &OutsideLanes<'_>, ws: &mut RadialWorkspace) {
+        let (n, s, r) = (ws.shells, ws.solids, ws.reactions);
+        let g = if G == ANY { ws.gases } else { G };
         let block = 1 + g;
-        let mut most: f64 = 0.0;
-        let mut note = |change: f64| {
-            most = if change.is_finite() {
-                most.max(change)
-            } else {
-                f64::INFINITY
-            };
-        };
+        let mut most = Wide::default();
+        // Zero but where a change is not finite.
+        let mut wrong = Wide::default();
+        let mut over_pressure = Wide::default();
+        for (lane, outside) in outside.iter().enumerate() {
+            over_pressure[lane] = outside.as_ref().map_or(1.0, |one| 1.0 / one.pressure);
+        }
         for shell in 0..n {
-            let step = &ws.right[shell * block..(shell + 1) * block];
-            let first = &ws.unreacted[shell * s..(shell + 1) * s];
-            let all: f64 = first.iter().sum();
-            let mut change = [0.0; super::physics::MOST_SOLIDS];
-            for (j, reaction) in self.chemistry.reactions.iter().enumerate() {
-                let place = shell * r + j;
-                let mut extent = ws.extent_rest[place] + ws.extent_by_temperature[place] * step[0];
-                let by = &ws.extent_by_pressure[place * g..(place + 1) * g];
-                extent += by
-                    .iter()
-                    .zip(&step[1..])
-                    .map(|(by, step)| by * step)
-                    .sum::<f64>();
-                note(extent.abs() / all);
-                ws.extent_rest[place] = extent;
-                for &(k, moles) in &reaction.solids {
-                    change[k] += moles * extent;
-                }
+            let mut all = Wide::default();
+            for first in &ws.unreacted[shell * s..(shell + 1) * s] {
+                all += *first;
             }
-            let amounts = &ws.now.amount[shell * s..(shell + 1) * s];
-            let mut share: f64 = 1.0;
-            for (amount, change) in amounts.iter().zip(change) {
-                let most = (1.0 - LEFT_AMOUNT) * amount.max(0.0);
-                if -change > most {
-                    share = share.min(most / -change);
+            let over = all.inverse();
+            for j in 0..r {
+                let place = shell * r + j;
+                let mut extent = ws.extent_rest[place]
+                    + ws.extent_by_temperature[place] * ws.right[shell * block];
+                for h in 0..g {
+                    extent +=
+                        ws.extent_by_pressure[place * g + h] * ws.right[shell * block + 1 + h];
                 }
+                most = most.max(extent.abs() * over);
+                wrong += extent * 0.0;
+                ws.extent_rest[place] = extent;
+            }
+            // No amount is left less than a share of what it is.
+            let mut share = Wide::all(1.0);
+            for k in 0..s {
+                let mut change = Wide::default();
+                for j in 0..r {
+                    change += ws.extent_rest[shell * r + j] * self.solid_moles[j * s + k];
+                }
+                let least = ws.now.amount[shell * s + k].positive() * (1.0 - LEFT_AMOUNT);
+                let wanted = -change;
+                let limited = least.if_below(wanted, least / wanted, share);
+                share = share.min(limited);
             }
             for j in 0..r {
-                ws.now.extent[shell * r + j] += share * ws.extent_rest[shell * r + j];
+                let place = shell * r + j;
+                let step = share * ws.extent_rest[place];
+                ws.now.extent[place] += step;
             }
-            self.amounts(shell, ws);
+            for k in 0..s {
+                let mut amount = ws.base.amount[shell * s + k];
+                for j in 0..r {
+                    amount += ws.now.extent[shell * r + j] * self.solid_moles[j * s + k];
+                }
+                ws.now.amount[shell * s + k] = amount;
+            }
         }
         for node in 0..=n {
-            let step = &ws.right[node * block..(node + 1) * block];
-            let kelvin = &mut ws.now.temperature[node];
-            note(step[0].abs() / *kelvin);
-            *kelvin += step[0].clamp(-MOST_WARMED * *kelvin, MOST_WARMED * *kelvin);
-            for (own, change) in ws.now.pressure[node * g..(node + 1) * g]
-                .iter_mut()
-                .zip(&step[1..])
-            {
-                note(change.abs() / pressure);
-                let next = *own + change;
-                *own = if *own > 0.0 {
-                    next.max(LEFT_PRESSURE * *own)
-                } else {
-                    next
-                };
+            let step = ws.right[node * block];
+            let kelvin = ws.now.temperature[node];
+            most = most.max(step.abs() / kelvin);
+            wrong += step * 0.0;
+            let limit = kelvin * MOST_WARMED;
+            ws.now.temperature[node] = kelvin + step.max(-limit).min(limit);
+            for k in 0..g {
+                let step = ws.right[node * block + 1 + k];
+                most = most.max(step.abs() * over_pressure);
+                wrong += step * 0.0;
+                let own = ws.now.pressure[node * g + k];
+                let next = own + step;
+                let least = next.max(own * LEFT_PRESSURE);
+                ws.now.pressure[node * g + k] = own.if_positive(least, next);
             }
         }
-        most
+        ws.moved = most + wrong;
     }
 
-    /// Amounts of a shell by the extents of the stage.
-    fn amounts(&self, shell: usize, ws: &mut RadialWorkspace) {
-        let (s, r) = (ws.solids, ws.reactions);
-        let own = shell * s..(shell + 1) * s;
-        let amounts = &mut ws.now.amount[own.clone()];
-        amounts.copy_from_slice(&ws.base.amount[own]);
-        for (j, reaction) in self.chemistry.reactions.iter().enumerate() {
-            for &(k, moles) in &reaction.solids {
-                amounts[k] += moles * ws.now.extent[shell * r + j];
-            }
-        }
-    }
-
-    /// Books what a solved stage comes to: amounts of gases by their pressures (`now_gas`), and what came of them (`came`) and of
-    /// enthalpy in J (`warmed`) into each shell. What leaves the particle is what is missing in all: so amounts close, and no
-    /// difference of flows far above what pores hold has to be exact.
-    pub fn book(&self, ws: &mut RadialWorkspace) {
+    /// Books what a solved stage of a lane comes to: amounts of gases by their pressures (`now_gas`), enthalpies of shells, and what
+    /// came of gases (`came`) and of enthalpy in J (`warmed`) into each shell. What leaves the particle is what is missing in all: so
+    /// amounts close, and no difference of flows far above what pores hold has to be exact.
+    pub fn book(&self, lane: usize, ws: &mut RadialWorkspace) {
         let (n, s, g, r) = (ws.shells, ws.solids, ws.gases, ws.reactions);
+        let block = 1 + g;
         for shell in 0..n {
-            let solids = shell * s..(shell + 1) * s;
-            let pairs = ws.now.amount[solids.clone()]
-                .iter()
-                .zip(&ws.solid_enthalpy[solids]);
-            let mut enthalpy: f64 = pairs.map(|(n, h)| n * h).sum();
-            let per_pascal = ws.held.pores[shell] / (GAS_CONSTANT * ws.now.temperature[shell]);
+            [ws.held.volume[shell][lane], ws.held.pores[shell][lane]] =
+                self.volumes(shell, lane, ws);
+            // Enthalpies are those before the last round, which moved temperatures by no more than its bound: to round-off they
+            // follow along their slope.
+            let warmer = ws.right[shell * block][lane];
+            let mut enthalpy = 0.0;
+            for k in shell * s..(shell + 1) * s {
+                let own = ws.solid_enthalpy[k][lane] + ws.solid_capacity[k][lane] * warmer;
+                enthalpy += ws.now.amount[k][lane] * own;
+            }
+            let kelvin = ws.now.temperature[shell][lane];
+            let per_pascal = ws.held.pores[shell][lane] / (GAS_CONSTANT * kelvin);
             for k in 0..g {
                 let place = shell * g + k;
-                let now = ws.now.pressure[place] * per_pascal;
+                let now = ws.now.pressure[place][lane] * per_pascal;
                 let mut made = 0.0;
-                for (j, reaction) in self.chemistry.reactions.iter().enumerate() {
-                    for &(_, moles) in reaction.gases.iter().filter(|one| one.0 == k) {
-                        made += moles * ws.now.extent[shell * r + j];
-                    }
+                for j in 0..r {
+                    made += self.gas_moles[j * g + k] * ws.now.extent[shell * r + j][lane];
                 }
-                ws.now_gas[place] = now;
-                ws.came[place] = now - ws.base.gas[place] - made;
-                enthalpy += now * ws.gas_enthalpy[place];
+                ws.now_gas[place][lane] = now;
+                ws.came[place][lane] = now - ws.base.gas[place][lane] - made;
+                let own = ws.gas_enthalpy[place][lane] + ws.gas_capacity[place][lane] * warmer;
+                enthalpy += now * own;
             }
-            ws.warmed[shell] = enthalpy - ws.base.enthalpy[shell];
+            ws.now_enthalpy[shell][lane] = enthalpy;
+            ws.warmed[shell][lane] = enthalpy - ws.base.enthalpy[shell][lane];
         }
     }
 
-    /// Takes amounts of gases in mol as the partial pressures of the iterate.
-    pub fn pressurise(&self, gas: &[f64], ws: &mut RadialWorkspace) {
+    /// Takes the amounts of gases at the start of a lane as the partial pressures of its iterate.
+    pub fn pressurise(&self, lane: usize, ws: &mut RadialWorkspace) {
         let g = ws.gases;
         for shell in 0..ws.shells {
-            let scale = GAS_CONSTANT * ws.now.temperature[shell] / ws.held.pores[shell];
+            let kelvin = ws.now.temperature[shell][lane];
+            let scale = GAS_CONSTANT * kelvin / ws.held.pores[shell][lane];
             for k in 0..g {
-                ws.now.pressure[shell * g + k] = gas[shell * g + k] * scale;
+                ws.now.pressure[shell * g + k][lane] = ws.start_gas[shell * g + k][lane] * scale;
             }
         }
     }

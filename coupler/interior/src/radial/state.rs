@@ -75,7 +75,8 @@ impl TellLayout {
     pub const FALLEN: usize = 8;
     /// Difference of temperature in K and of partial pressures over the pressure that a particle of one shell hides.
     pub const HIDDEN: usize = 9;
-    const FLOWS: usize = 11;
+    pub const ROUNDS: usize = 11;
+    const FLOWS: usize = 12;
 
     pub fn flow(&self) -> Range<usize> {
         let from = self.from + Self::FLOWS;

@@ -1,5 +1,7 @@
 //! Flows of the gases of a mixture through pores.
 
+use calcine_numerics::Lanes;
+
 use crate::gas::GAS_CONSTANT;
 
 /// Most gases whose flows are found.
@@ -18,58 +20,60 @@ pub const MOST_GASES: usize = 8;
 pub struct DustyGas;
 
 impl DustyGas {
-    /// Fills the matrix of n_i = −ψ Σ_k m_ik ∂p_k, in mol/m/s/Pa, row by row: at mole fractions x, with Knudsen diffusivities and the
-    /// pair diffusivities `pair(i, j)`, all in m²/s, and a temperature in K. False where there is none.
-    pub fn fill(
+    /// Fills the matrix of n_i = −ψ Σ_k m_ik ∂p_k, in mol/m/s/Pa, row by row, of mixtures side by side: at mole fractions x, with Knudsen
+    /// diffusivities and the pair diffusivities `pair(i, j)`, all in m²/s, and temperatures in K. Not finite where there is none.
+    #[inline(always)]
+    pub fn fill<const N: usize>(
         self,
-        fractions: &[f64],
-        knudsen: &[f64],
-        pair: impl Fn(usize, usize) -> f64,
-        temperature: f64,
-        out: &mut [f64],
-    ) -> bool {
+        fractions: &[Lanes<N>],
+        knudsen: &[Lanes<N>],
+        pair: impl Fn(usize, usize) -> Lanes<N>,
+        temperature: Lanes<N>,
+        out: &mut [Lanes<N>],
+    ) {
         let n = fractions.len();
-        if n > MOST_GASES {
-            return false;
-        }
-        let mut a = [[0.0; 2 * MOST_GASES]; MOST_GASES];
+        let a = &mut out[..n * n];
         for i in 0..n {
-            a[i][i] = 1.0 / knudsen[i];
-            a[i][n + i] = 1.0 / (GAS_CONSTANT * temperature);
+            a[i * n + i] = knudsen[i].inverse();
         }
         for i in 0..n {
             for j in i + 1..n {
-                let resistance = 1.0 / pair(i, j);
-                a[i][i] += fractions[j] * resistance;
-                a[i][j] -= fractions[i] * resistance;
-                a[j][j] += fractions[i] * resistance;
-                a[j][i] -= fractions[j] * resistance;
+                let resistance = pair(i, j).inverse();
+                let (own, other) = (fractions[i] * resistance, fractions[j] * resistance);
+                a[i * n + i] += other;
+                a[j * n + j] += own;
+                a[i * n + j] = -own;
+                a[j * n + i] = -other;
             }
         }
-        // Columns are dominated by their diagonal, 1/D_K + Σ x_j/D_ij against the same sum without walls: no pivots.
+        // Columns are dominated by their diagonal, 1/D_K + Σ x_j/D_ij against the same sum without walls: inverted in place
+        // without pivots.
         for k in 0..n {
-            let inverse = 1.0 / a[k][k];
-            if !inverse.is_finite() {
-                return false;
+            let inverse = a[k * n + k].inverse();
+            a[k * n + k] = inverse;
+            for j in 0..n {
+                if j != k {
+                    a[k * n + j] = a[k * n + j] * inverse;
+                }
             }
-            let row = a[k];
-            for (i, line) in a.iter_mut().enumerate().take(n) {
+            for i in 0..n {
                 if i == k {
-                    line.iter_mut().take(2 * n).for_each(|v| *v *= inverse);
-                } else {
-                    let share = line[k] * inverse;
-                    if share != 0.0 {
-                        for (value, own) in line.iter_mut().zip(&row).take(2 * n) {
-                            *value -= share * own;
-                        }
+                    continue;
+                }
+                let share = a[i * n + k];
+                a[i * n + k] = -(share * inverse);
+                for j in 0..n {
+                    if j != k {
+                        let pivot = a[k * n + j];
+                        a[i * n + j] -= share * pivot;
                     }
                 }
             }
         }
-        for (i, line) in a.iter().enumerate().take(n) {
-            out[i * n..(i + 1) * n].copy_from_slice(&line[n..2 * n]);
+        let scale = (temperature * GAS_CONSTANT).inverse();
+        for value in a {
+            *value = *value * scale;
         }
-        true
     }
 }
 
@@ -83,8 +87,11 @@ mod tests {
     /// Flows of CO2 and N2 at one pressure by opposite gradients of 1 Pa/m.
     fn counter(pore: f64, between: f64) -> [f64; 2] {
         let walls = MASSES.map(|mass| knudsen::diffusivity(pore, 1000.0, mass));
-        let mut matrix = [0.0; 4];
-        assert!(DustyGas.fill(&[0.4, 0.6], &walls, |_, _| between, 1000.0, &mut matrix));
+        let mut matrix = [Lanes([0.0]); 4];
+        let (fractions, walls) = ([0.4, 0.6].map(Lanes::all), walls.map(Lanes::all));
+        let pair = |_, _| Lanes::all(between);
+        DustyGas.fill(&fractions, &walls, pair, Lanes([1000.0]), &mut matrix);
+        let matrix = matrix.map(|value| value[0]);
         [matrix[0] - matrix[1], matrix[2] - matrix[3]]
     }
 
@@ -116,8 +123,15 @@ mod tests {
 
     #[test]
     fn a_single_gas_meets_walls_alone() {
-        let mut one = [0.0];
-        assert!(DustyGas.fill(&[1.0], &[2e-5], |_, _| 1e-4, 500.0, &mut one));
-        assert!((one[0] / (2e-5 / (GAS_CONSTANT * 500.0)) - 1.0).abs() < 1e-14);
+        let mut one = [Lanes([0.0])];
+        let pair = |_, _| Lanes([1e-4]);
+        DustyGas.fill(
+            &[Lanes([1.0])],
+            &[Lanes([2e-5])],
+            pair,
+            Lanes([500.0]),
+            &mut one,
+        );
+        assert!((one[0][0] / (2e-5 / (GAS_CONSTANT * 500.0)) - 1.0).abs() < 1e-14);
     }
 }

@@ -1,6 +1,6 @@
 //! Arrhenius' rate constant, 1889.
 
-use calcine_numerics::Number;
+use calcine_numerics::{Lanes, Number};
 
 use crate::dimension::Dimension;
 use crate::gas::GAS_CONSTANT;
@@ -62,6 +62,18 @@ impl Arrhenius {
         self.factor * power * (-self.activation_energy / (GAS_CONSTANT * temperature)).exp()
     }
 
+    /// k and dk/dT at temperatures in K side by side.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, temperature: Lanes<N>) -> [Lanes<N>; 2] {
+        let over = temperature.inverse();
+        let driven = over * (self.activation_energy / GAS_CONSTANT);
+        let mut k = (-driven).exp() * self.factor;
+        if self.exponent != 0.0 {
+            k = k * temperature.map(|t| t.powf(self.exponent));
+        }
+        [k, k * (driven + self.exponent) * over]
+    }
+
     /// The same with derivatives, dk/dT = k (b + E/(R T))/T.
     #[inline]
     pub fn of<N: Number>(&self, temperature: N) -> N {
@@ -102,6 +114,17 @@ mod tests {
             "{:e}",
             LAW.at(1200.0)
         );
+    }
+
+    #[test]
+    fn side_by_side_it_is_what_it_is_alone() {
+        let all = [300.0, 555.5, 1200.0, 2000.0];
+        let [k, slope] = LAW.lanes(Lanes(all));
+        for (lane, t) in all.into_iter().enumerate() {
+            let one = LAW.of(calcine_numerics::Dual::<1>::along(t, 0));
+            assert!((k[lane] / one.value - 1.0).abs() < 1e-13, "{t}");
+            assert!((slope[lane] / one.slope[0] - 1.0).abs() < 1e-13, "{t}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Equilibria.
 
-use calcine_numerics::Number;
+use calcine_numerics::{Dual, Lanes, Number};
 
 use crate::gas::GAS_CONSTANT;
 
@@ -74,6 +74,30 @@ impl Equilibrium {
             }
             Self::Gibbs(line) => (-line.at(temperature)).exp(),
         }
+    }
+
+    /// 1/K at temperatures in K side by side, and the slope of its logarithm in 1/K.
+    #[inline(always)]
+    pub fn inverse_lanes<const N: usize>(&self, temperature: Lanes<N>) -> [Lanes<N>; 2] {
+        let (mut logarithm, mut slope) = (Lanes::default(), Lanes::default());
+        match self {
+            Self::OneWay => return [logarithm, slope],
+            Self::Line {
+                constant,
+                over_temperature,
+            } => {
+                let over = temperature.inverse();
+                logarithm = over * -over_temperature - Lanes::all(*constant);
+                slope = over * over * *over_temperature;
+            }
+            Self::Gibbs(line) => {
+                for lane in 0..N {
+                    let own = line.at(Dual::<1>::along(temperature[lane], 0));
+                    (logarithm[lane], slope[lane]) = (-own.value, -own.slope[0]);
+                }
+            }
+        }
+        [logarithm.exp(), slope]
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod table;
 
+use calcine_numerics::Lanes;
 use thiserror::Error;
 
 use crate::gas::REFERENCE_TEMPERATURE;
@@ -169,6 +170,17 @@ impl SolidSpecies {
     /// Sensible enthalpy in J/kg, zero at 298.15 K.
     pub fn enthalpy(&self, temperature: f64) -> f64 {
         self.heat_capacity.enthalpy(temperature) - self.reference[0]
+    }
+
+    /// Molar heat capacity in J/mol/K and enthalpy with that of formation in J/mol, at temperatures in K side by side.
+    #[inline(always)]
+    pub fn molar_lanes<const N: usize>(&self, temperature: Lanes<N>) -> [Lanes<N>; 2] {
+        let [capacity, enthalpy] = self.heat_capacity.lanes(temperature);
+        let sensible = (enthalpy - self.reference[0]) * self.molar_mass;
+        [
+            capacity * self.molar_mass,
+            sensible + self.formation_enthalpy,
+        ]
     }
 
     /// Molar Gibbs energy in J/mol.

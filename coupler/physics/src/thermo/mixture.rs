@@ -1,5 +1,7 @@
 //! Mixtures of ideal gases.
 
+use calcine_numerics::Lanes;
+
 use super::diffusion::MixtureAveraged;
 use super::wilke::Wilke;
 use super::{Element, Species, ThermoError, eucken, inverse};
@@ -228,6 +230,21 @@ impl Mixture {
     pub fn viscosity(&self, temperature: f64, composition: &[f64]) -> f64 {
         let (weights, viscosities) = self.weigh(temperature, composition);
         self.sum_of(&weights, |k| viscosities[k])
+    }
+
+    /// Dynamic viscosities in Pa s side by side, of gases in amounts of any scale, eight at most.
+    #[inline(always)]
+    pub fn viscosity_lanes<const N: usize>(
+        &self,
+        temperature: Lanes<N>,
+        amounts: &[Lanes<N>],
+    ) -> Lanes<N> {
+        let (mut values, mut roots) = ([Lanes::default(); 8], [Lanes::default(); 8]);
+        for (k, one) in self.species.iter().enumerate().take(amounts.len()) {
+            values[k] = one.sutherland().lanes(temperature);
+            roots[k] = values[k].sqrt();
+        }
+        self.interaction.lanes(amounts, (&values, &roots))
     }
 
     /// Thermal conductivity in W/m/K.

@@ -1,5 +1,7 @@
 //! NASA's seven coefficients, 1971.
 
+use calcine_numerics::Lanes;
+
 use super::{ThermoError, inverse};
 use crate::gas::GAS_CONSTANT;
 
@@ -118,6 +120,22 @@ impl Nasa7 {
         GAS_CONSTANT * within(a, t) + beyond
     }
 
+    /// Molar heat capacity in J/mol/K and enthalpy in J/mol, formation included, at temperatures in K side by side.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, temperature: Lanes<N>) -> [Lanes<N>; 2] {
+        let [lowest, highest, common] = [self.lowest, self.highest, self.common].map(Lanes::all);
+        let t = temperature.max(lowest).min(highest);
+        let a = |k: usize| common.if_below(t, Lanes::all(self.high[k]), Lanes::all(self.low[k]));
+        let [a0, a1, a2, a3, a4, a5] = [a(0), a(1), a(2), a(3), a(4), a(5)];
+        let capacity = (a0 + t * (a1 + t * (a2 + t * (a3 + t * a4)))) * GAS_CONSTANT;
+        let fourth = a3 * 0.25 + t * a4 * 0.2;
+        let within = a5 + t * (a0 + t * (a1 * 0.5 + t * (a2 * (1.0 / 3.0) + t * fourth)));
+        [
+            capacity,
+            within * GAS_CONSTANT + capacity * (temperature - t),
+        ]
+    }
+
     /// Molar entropy in J/mol/K at 1 bar.
     pub fn entropy(&self, temperature: f64) -> f64 {
         let (t, a) = self.at(temperature);
@@ -162,6 +180,25 @@ mod tests {
 
     fn of(name: &str) -> Nasa7 {
         *Species::built_in(name).unwrap().polynomial()
+    }
+
+    #[test]
+    fn side_by_side_it_is_what_it_is_alone() {
+        for (name, one) in polynomials() {
+            let all = [150.0, 298.15, 700.0, 1000.0, 1001.0, 2500.0, 4000.0, 9000.0];
+            let [capacity, enthalpy] = one.lanes(Lanes(all));
+            for (k, t) in all.into_iter().enumerate() {
+                assert!(
+                    (capacity[k] / one.heat_capacity(t) - 1.0).abs() < 1e-12,
+                    "{name}"
+                );
+                let size = one.enthalpy(t).abs() + 1e5;
+                assert!(
+                    (enthalpy[k] - one.enthalpy(t)).abs() < 1e-14 * size,
+                    "{name}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Sutherland 1893.
 
+use calcine_numerics::Lanes;
+
 /// Viscosity of a gas of molecules that attract each other weakly.
 ///
 /// μ = A √T/(1 + S/T), A in kg/m/s/K^½, S in K (docs/theory.md, COR-7).
@@ -21,6 +23,13 @@ impl Sutherland {
     /// Dynamic viscosity in Pa s at a temperature in K.
     pub fn viscosity(&self, temperature: f64) -> f64 {
         self.coefficient * temperature.sqrt() / (1.0 + self.temperature / temperature)
+    }
+
+    /// μ in Pa s at temperatures in K side by side.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, temperature: Lanes<N>) -> Lanes<N> {
+        let below = temperature.inverse() * self.temperature + 1.0;
+        temperature.sqrt() * self.coefficient / below
     }
 
     /// dμ/dT in Pa s/K: μ/T · (½ + S/(T + S)).

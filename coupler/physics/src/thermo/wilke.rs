@@ -1,5 +1,7 @@
 //! Wilke 1950, and Mason and Saxena 1958.
 
+use calcine_numerics::Lanes;
+
 /// Interaction of the species of a mixture of dilute gases in its viscosity and conductivity.
 ///
 /// μ = Σ_i x_i μ_i/Σ_j x_j Φ_ij,  κ = Σ_i x_i κ_i/Σ_j x_j Φ_ij, over mole fractions x,
@@ -61,6 +63,26 @@ impl Wilke {
             }
             *weight = amounts[i] / sum;
         }
+    }
+
+    /// μ = Σ w_i μ_i of lanes, from amounts in any scale and the μ_i with their √μ_i.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(
+        &self,
+        amounts: &[Lanes<N>],
+        (values, roots): (&[Lanes<N>], &[Lanes<N>]),
+    ) -> Lanes<N> {
+        let mut all = Lanes::default();
+        for i in 0..amounts.len() {
+            let mut sum = Lanes::default();
+            for j in 0..amounts.len() {
+                let place = i * self.count + j;
+                let one = roots[i] / roots[j] * self.mass_ratios[place] + 1.0;
+                sum += amounts[j] * one * one * self.scales[place];
+            }
+            all += amounts[i] / sum * values[i];
+        }
+        all
     }
 }
 

@@ -52,7 +52,7 @@ fn a_stone_of_any_rate_constant_ends_at_about_the_same_cost() {
             now += 10.0;
             assert!(now < 5000.0);
         }
-        let [steps, _, _] = stone.work();
+        let [steps, ..] = stone.work();
         all.push((now, steps));
     }
     let steps = all.iter().map(|one| one.1);
