@@ -183,10 +183,10 @@ impl RadialPhysics {
         let (mut pressures, mut fractions) =
             ([Wide::default(); MOST_GASES], [Wide::default(); MOST_GASES]);
         let (mut pressure, mut drop) = (Wide::default(), Wide::default());
-        for k in 0..g {
+        for (k, mean) in pressures[..g].iter_mut().enumerate() {
             let ends = [now.pressure[face * g + k], now.pressure[(face + 1) * g + k]];
-            pressures[k] = ((ends[0] + ends[1]) * 0.5).positive();
-            pressure += pressures[k];
+            *mean = ((ends[0] + ends[1]) * 0.5).positive();
+            pressure += *mean;
             drop += ends[0] - ends[1];
         }
         let over = pressure.inverse();
@@ -205,10 +205,10 @@ impl RadialPhysics {
         DustyGas.fill(&fractions[..g], &walls[..g], pair, kelvin, matrix);
         let [here, there] = [held.porosity[face], held.porosity[next]];
         let paths = area / ((inside / here + beyond / there) * self.solid.tortuosity);
-        for k in 0..g * g {
-            matrix[k] = matrix[k] * paths;
-            *broken += matrix[k] * 0.0;
-            renew(mask, &mut held.diffusion[face * g * g + k], matrix[k]);
+        for (k, entry) in matrix.iter_mut().enumerate() {
+            *entry = *entry * paths;
+            *broken += *entry * 0.0;
+            renew(mask, &mut held.diffusion[face * g * g + k], *entry);
         }
         let through = |porosity: Wide| porosity.map(|own| self.solid.permeability.of(own));
         let permeable = area / (inside / through(here) + beyond / through(there));

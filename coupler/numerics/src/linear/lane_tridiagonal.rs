@@ -149,10 +149,10 @@ mod tests {
             for row in 0..rows {
                 for i in 0..block {
                     let place = |i: usize, j: usize| ((3 * row + 1) * block + i) * block + j;
-                    for lane in 0..4 {
+                    (0..4).for_each(|lane| {
                         let j = if lane == 2 { (i + 1) % block } else { i };
                         entries[place(i, j)][lane] += 3.0 * block as f64;
-                    }
+                    });
                 }
             }
             let mut found = right.clone();
