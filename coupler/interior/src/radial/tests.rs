@@ -2,5 +2,6 @@
 
 mod conservation;
 mod limits;
+mod orders;
 mod support;
 mod verification;

@@ -48,7 +48,7 @@ fn with_fast_reactions_they_are_a_shrinking_core() {
 }
 
 /// A solid that takes up heat as it reacts, by its temperature alone.
-fn raw() -> SolidChemistry {
+pub fn raw() -> SolidChemistry {
     let made = |name, formation| {
         SolidSpecies::new(name, "C", formation, 1.0, HeatCapacity::constant(1000.0)).unwrap()
     };

@@ -103,6 +103,20 @@ pub fn pellet(
     Radial::new(chemistry, &[1.0, 0.0], porous, pores, numerics).unwrap()
 }
 
+/// k c of the first gas, in mol/m³/s.
+pub fn first_order(k: f64) -> Rate {
+    Rate::Power(PowerLaw {
+        rate_constant: Arrhenius {
+            factor: k,
+            exponent: 0.0,
+            activation_energy: 0.0,
+        },
+        in_series: None,
+        solids: Vec::new(),
+        gases: vec![(0, 1.0)],
+    })
+}
+
 pub const DILUTE: f64 = 1e-4;
 pub const KELVIN: f64 = 800.0;
 
@@ -145,16 +159,7 @@ fn a_catalyst_sphere_has_the_effectiveness_of_its_thiele_number() {
         (5.0, 10.0, 0.342_885),
     ] {
         let k = thiele * thiele * diffusivity() / (RADIUS * RADIUS);
-        let rate = Rate::Power(PowerLaw {
-            rate_constant: Arrhenius {
-                factor: k,
-                exponent: 0.0,
-                activation_energy: 0.0,
-            },
-            in_series: None,
-            solids: Vec::new(),
-            gases: vec![(0, 1.0)],
-        });
+        let rate = first_order(k);
         let graded = ShellGrid {
             shells: 40,
             grading: 100.0,
@@ -183,16 +188,7 @@ fn a_solid_whose_gas_diffuses_in_is_used_up_as_ishida_and_wen_have_it() {
     // Requirements XDP-12: conversion at the end of the first stage, times of that and of the end over τ = c_solid/(k c_gas).
     for (biot, first, full) in [(1e7, 1.0, 2.666_667), (10.0, 1.217_363, 3.0)] {
         let k = 10.0 * diffusivity() / (RADIUS * RADIUS);
-        let rate = Rate::Power(PowerLaw {
-            rate_constant: Arrhenius {
-                factor: k,
-                exponent: 0.0,
-                activation_energy: 0.0,
-            },
-            in_series: None,
-            solids: Vec::new(),
-            gases: vec![(0, 1.0)],
-        });
+        let rate = first_order(k);
         let solids = vec![(0, -1.0), (1, 1.0)];
         let mut model = pellet(rate, solids, wide(), grid(40));
         put(&mut model, RADIUS, 2000.0, KELVIN, 1);
