@@ -17,8 +17,9 @@ use calcine_physics::gas::GAS_CONSTANT;
 
 use super::physics::RadialPhysics;
 use super::rates::ShellState;
+use super::side_by_side::Wide;
 use super::transport::{ANY, Outside, OutsideLanes};
-use super::workspace::{RadialWorkspace, Wide};
+use super::workspace::RadialWorkspace;
 
 /// Where entries of the block-tridiagonal matrix stand: row of blocks, its neighbour (0 inside, 1 itself, 2 outside), row, column.
 #[inline(always)]

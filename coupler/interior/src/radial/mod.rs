@@ -19,6 +19,7 @@ mod model;
 mod physics;
 mod rates;
 mod react;
+mod side_by_side;
 mod stage;
 mod state;
 mod transport;

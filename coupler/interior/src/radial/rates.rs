@@ -8,7 +8,7 @@ use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
 use calcine_physics::reaction::{Arrhenius, Conversion, Equilibrium, PowerLaw, conversion};
 
 use super::physics::RadialPhysics;
-use super::workspace::{LANES, Wide};
+use super::side_by_side::{LANES, Wide};
 use crate::reacting::{Rate, Reaction};
 
 /// Share of the solids of a shell below which what a rate of an order below one uses counts as a trace, and what goes backwards

@@ -6,9 +6,10 @@ use calcine_physics::pores::dusty_gas::MOST_GASES;
 use super::Radial;
 use super::attempt::{RadialCourse, RadialOutcome, RadialStalled};
 use super::material::ShellResolution;
+use super::side_by_side::{LANES, Wide};
 use super::state::{RowLayout, TellLayout};
 use super::transport::{Outside, OutsideLanes};
-use super::workspace::{LANES, RadialWorkspace, Wide};
+use super::workspace::RadialWorkspace;
 use crate::error::ModelError;
 use crate::model::Surroundings;
 

@@ -4,8 +4,9 @@ use calcine_numerics::lanes::vectorised;
 use calcine_physics::gas::GAS_CONSTANT;
 
 use super::physics::RadialPhysics;
+use super::side_by_side::Wide;
 use super::transport::{ANY, OutsideLanes};
-use super::workspace::{RadialWorkspace, Wide};
+use super::workspace::RadialWorkspace;
 
 /// Share of an amount or a pressure that a round leaves at least, and share of a temperature by which it moves at most.
 const LEFT_AMOUNT: f64 = 1e-2;

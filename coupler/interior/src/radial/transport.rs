@@ -6,7 +6,8 @@ use calcine_physics::pores::dusty_gas::MOST_GASES;
 use calcine_physics::pores::{DustyGas, PorousConductivity, knudsen};
 
 use super::physics::{PAIR_PRESSURE, PAIR_TEMPERATURE, RadialPhysics};
-use super::workspace::{LANES, RadialWorkspace, Wide};
+use super::side_by_side::{LANES, Wide};
+use super::workspace::RadialWorkspace;
 
 /// How much better than the outermost shell the film lets pass what flows by pressure: its pressure drops by nothing that shows.
 const OPENING: f64 = 1e4;

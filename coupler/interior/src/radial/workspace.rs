@@ -1,15 +1,11 @@
 //! Memory of the particles that are computed side by side, one a lane, reused; no result depends on what it was used for before, nor
 //! on what the other lanes hold.
 
-use calcine_numerics::{LaneTridiagonal, Lanes};
+use calcine_numerics::LaneTridiagonal;
 
 use super::grid::ShellGeometry;
 use super::rates::ShellRate;
-
-/// Particles that are computed side by side.
-pub(super) const LANES: usize = 8;
-/// A value of each.
-pub(super) type Wide = Lanes<LANES>;
+use super::side_by_side::{LANES, Wide};
 
 /// The unknowns of a particle: of each shell, from the centre outwards, and of its surface, the last node.
 #[derive(Clone, Debug, Default)]
