@@ -1,19 +1,15 @@
 //! Orders of convergence: in shells and steps, smooth and at fronts, and in windows with a gas that follows.
 
 use calcine_physics::gas::GAS_CONSTANT;
-use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
-use calcine_physics::solid::HeatCapacity;
-use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
 
 use super::limits::raw;
 use super::support::*;
 use super::verification::{
-    DILUTE, KELVIN, RADIUS, diffusivity, dilute_gas, first_order, pellet, wide,
+    DILUTE, FRONT, KELVIN, RADIUS, diffusivity, dilute_gas, first_order, front, pellet, wide,
 };
 use crate::model::{GasLines, ParticleModel, Transfer};
 use crate::radial::{PoreGas, Radial, RadialNumerics};
-use crate::reacting::{Rate, Reaction, SolidChemistry};
 
 /// Order by errors at twice the resolution each.
 fn orders(errors: &[f64]) -> Vec<f64> {
@@ -74,49 +70,14 @@ fn reactions_are_of_second_order_in_steps_where_they_are_smooth() {
 }
 
 /// Mean over time of what the conversion by a front that heat limits is off by.
-fn front(shells: usize) -> f64 {
-    let (density, latent, conductivity, at_rest, molar) = (2700.0, 1.7e6, 0.6, 1000.0, 0.012_011);
-    let made = |name, formation| {
-        SolidSpecies::new(name, "C", formation, 1.0, HeatCapacity::constant(0.01)).unwrap()
-    };
-    let reaction = Reaction {
-        name: "front".into(),
-        solids: vec![(0, -1.0), (1, 1.0)],
-        gases: Vec::new(),
-        rate: Rate::Power(PowerLaw {
-            rate_constant: Arrhenius {
-                factor: 1e3,
-                exponent: 0.0,
-                activation_energy: 0.0,
-            },
-            in_series: None,
-            solids: vec![(0, 1.0)],
-            gases: Vec::new(),
-        }),
-        equilibrium: Equilibrium::Line {
-            constant: 20.0,
-            over_temperature: -20.0 * at_rest,
-        },
-    };
-    let solids = vec![made("raw", 0.0), made("burnt", latent * molar)];
-    let chemistry = SolidChemistry::new(solids, None, vec![reaction]).unwrap();
+fn front_off(shells: usize) -> f64 {
     let numerics = RadialNumerics {
         temperature: 5.0,
         conversion: 1e-4,
         ..RadialNumerics::new(grid(shells))
     };
-    let solid = porous(&[5400.0, 5400.0], conductivity);
-    let mut model =
-        Radial::new(chemistry, &[1.0, 0.0], solid, PoreGas::default(), numerics).unwrap();
-    put(&mut model, RADIUS, density, at_rest - 1e-3, 1);
-    let still = Still {
-        temperature: at_rest + 200.0,
-        pressure: 1e5,
-        composition: Vec::new(),
-        conductance: 1e6 * conductivity / RADIUS * sphere::surface(RADIUS),
-        film: 0.0,
-        network: 0.0,
-    };
+    let (mut model, still) = front(1e6, numerics);
+    let [density, latent, conductivity, _] = FRONT;
     let whole = density * latent * RADIUS * RADIUS / (6.0 * conductivity * 200.0);
     let windows = 90;
     let mut sum = 0.0;
@@ -141,7 +102,7 @@ fn front(shells: usize) -> f64 {
 
 #[test]
 fn fronts_are_of_first_order_in_shells_at_least() {
-    let errors = [10, 20, 40].map(front);
+    let errors = [10, 20, 40].map(front_off);
     let found = orders(&errors);
     assert!(
         found.iter().all(|order| *order > 0.9),

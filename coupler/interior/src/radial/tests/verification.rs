@@ -281,53 +281,62 @@ fn a_gas_that_is_made_in_pores_has_the_pressure_of_darcy_s_law() {
     assert!((stated / 302_885.0 - 1.0).abs() < 1e-3, "{stated}");
 }
 
+/// Density in kg/m³, heat in J/kg, conductivity in W/m/K and temperature in K of a front that heat limits, in a particle without heat capacity.
+pub const FRONT: [f64; 4] = [2700.0, 1.7e6, 0.6, 1000.0];
+
+/// Such a particle in gas 200 K hotter, of a Biot number.
+pub fn front(biot: f64, numerics: RadialNumerics) -> (Radial, Still) {
+    let [density, latent, conductivity, at_rest] = FRONT;
+    let molar = 0.012_011;
+    let made = |name, formation| {
+        SolidSpecies::new(name, "C", formation, 1.0, HeatCapacity::constant(0.01)).unwrap()
+    };
+    let solids = vec![made("raw", 0.0), made("burnt", latent * molar)];
+    let reaction = Reaction {
+        name: "front".into(),
+        solids: vec![(0, -1.0), (1, 1.0)],
+        gases: Vec::new(),
+        rate: Rate::Power(PowerLaw {
+            rate_constant: Arrhenius {
+                factor: 1e3,
+                exponent: 0.0,
+                activation_energy: 0.0,
+            },
+            in_series: None,
+            solids: vec![(0, 1.0)],
+            gases: Vec::new(),
+        }),
+        // At rest at the temperature of the front.
+        equilibrium: Equilibrium::Line {
+            constant: 20.0,
+            over_temperature: -20.0 * at_rest,
+        },
+    };
+    let chemistry = SolidChemistry::new(solids, None, vec![reaction]).unwrap();
+    let solid = porous(&[5400.0, 5400.0], conductivity);
+    let mut model =
+        Radial::new(chemistry, &[1.0, 0.0], solid, PoreGas::default(), numerics).unwrap();
+    put(&mut model, RADIUS, density, at_rest - 1e-3, 1);
+    let still = Still {
+        temperature: at_rest + 200.0,
+        pressure: 1e5,
+        composition: Vec::new(),
+        conductance: biot * conductivity / RADIUS * sphere::surface(RADIUS),
+        film: 0.0,
+        network: 0.0,
+    };
+    (model, still)
+}
+
 #[test]
 fn a_front_that_heat_limits_goes_as_its_law_has_it() {
     // Requirements XDP-15: t = ρ L R² (1 + 2/Bi)/(6 k ΔT), without heat capacity.
-    let (density, latent, conductivity, front) = (2700.0, 1.7e6, 0.6, 1000.0);
     for (biot, exact) in [(1e6, 637.5), (5.0, 892.5)] {
-        let molar = 0.012_011;
-        let made = |name, formation| {
-            SolidSpecies::new(name, "C", formation, 1.0, HeatCapacity::constant(0.01)).unwrap()
-        };
-        let solids = vec![made("raw", 0.0), made("burnt", latent * molar)];
-        let reaction = Reaction {
-            name: "front".into(),
-            solids: vec![(0, -1.0), (1, 1.0)],
-            gases: Vec::new(),
-            rate: Rate::Power(PowerLaw {
-                rate_constant: Arrhenius {
-                    factor: 1e3,
-                    exponent: 0.0,
-                    activation_energy: 0.0,
-                },
-                in_series: None,
-                solids: vec![(0, 1.0)],
-                gases: Vec::new(),
-            }),
-            // At rest at the temperature of the front.
-            equilibrium: Equilibrium::Line {
-                constant: 20.0,
-                over_temperature: -20.0 * front,
-            },
-        };
-        let chemistry = SolidChemistry::new(solids, None, vec![reaction]).unwrap();
-        let solid = porous(&[5400.0, 5400.0], conductivity);
         let numerics = RadialNumerics {
             temperature: 5.0,
             ..RadialNumerics::new(grid(40))
         };
-        let mut model =
-            Radial::new(chemistry, &[1.0, 0.0], solid, PoreGas::default(), numerics).unwrap();
-        put(&mut model, RADIUS, density, front - 1e-3, 1);
-        let still = Still {
-            temperature: front + 200.0,
-            pressure: 1e5,
-            composition: Vec::new(),
-            conductance: biot * conductivity / RADIUS * sphere::surface(RADIUS),
-            film: 0.0,
-            network: 0.0,
-        };
+        let (mut model, still) = front(biot, numerics);
         let span = exact / 200.0;
         let mut now = 0.0;
         while model.conversion(model.row(0), None) < 1.0 - 1e-5 {
