@@ -119,8 +119,8 @@ impl Paths {
             .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9))
     }
 
-    /// Temperatures of the reservoirs in K at a process time in s, with bodies of these temperatures in K.
-    pub fn reservoirs(&mut self, time: f64, bodies: &[f64]) -> &[f64] {
+    /// Temperatures of the reservoirs in K at a process time in s, with bodies of these temperatures in K; and the body that each is of.
+    pub fn reservoirs(&mut self, time: f64, bodies: &[f64]) -> (&[f64], &[Option<usize>]) {
         let walls = self.setup.walls.iter();
         let schedules = walls.filter_map(|wall| wall.temperature.as_ref());
         self.kelvin.clear();
@@ -134,7 +134,7 @@ impl Paths {
                 *kelvin = *own;
             }
         }
-        &self.kelvin
+        (&self.kelvin, &self.bodies)
     }
 
     /// Finds what particles meet at a process time in s, and tells it.

@@ -165,12 +165,12 @@ impl InteriorStage {
             bodies.take(None, [span, end]);
             return Ok(());
         };
-        let of_bodies = self.paths.bodies().to_vec();
+        let (reservoirs, of) = self.paths.reservoirs(end, bodies.told());
         let surroundings = NetworkSurroundings {
             gas_conductivity,
-            reservoirs: self.paths.reservoirs(end, bodies.told()),
+            reservoirs,
             bodies: NetworkBodies {
-                of: &of_bodies,
+                of,
                 start: bodies.told(),
                 line: &|body, kelvin| bodies.line(body, kelvin, [span, end]),
             },
