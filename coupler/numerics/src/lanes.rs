@@ -79,7 +79,7 @@ impl<const N: usize> Lanes<N> {
         Self::all(0.0).if_below(self, yes, no)
     }
 
-    /// The larger ones; of a NaN and a number the number.
+    /// The larger ones; its own where either is NaN.
     #[inline(always)]
     #[must_use]
     pub fn max(self, other: Self) -> Self {
