@@ -31,6 +31,7 @@ mod parcel_packing;
 mod parcel_tracking;
 mod planted;
 mod resume;
+mod short_windows;
 mod skewed;
 mod species;
 mod step_errors;

@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used)]
 
 use calcine_coupler::part::{Balance, Gas};
+use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{
-    CompositionSchedule, Convection, GasPatch, InletFlow, InletScalars, Schedule,
+    CompositionSchedule, Convection, GasPatch, GasStart, InletFlow, InletScalars, Schedule,
 };
 
 use crate::common::*;
@@ -197,4 +198,50 @@ fn a_species_diffuses_into_gas_at_rest_as_the_error_function() {
     // Second order in space (0.0296, 0.0082 of a front of 0.7: order 1.86).
     assert!(errors[1] < 0.012 * 0.7, "{errors:?}");
     assert!(errors[0] / errors[1] > 3.0, "{errors:?}");
+}
+
+/// One limiter serves all species and takes the side of the one that varies most: it switches from iterate to iterate where several meet.
+#[test]
+fn windows_converge_where_a_limiter_serves_several_species() {
+    const CELLS: usize = 24;
+    let patches = ["in", "out", "side", "side", "side", "side"];
+    let mesh = named_box([0.1, 0.1, 0.01], [CELLS, CELLS, 1], patches);
+    let bottom = GasPatch::Inlet {
+        flow: InletFlow::SuperficialVelocity(Schedule::constant(0.5)),
+        temperature: Schedule::constant(300.0),
+        composition: Some(CompositionSchedule(vec![(
+            0.0,
+            vec![0.02, 0.05, 0.23, 0.7],
+        )])),
+        turbulence: None,
+        scalars: InletScalars::Flux,
+    };
+    let mut setup = setup(&[("in", bottom), ("out", outlet()), ("side", slip())]);
+    setup.properties = GasModel::Mixture(Mixture::new(["CH4", "CO2", "O2", "N2"]).unwrap());
+    setup.composition = vec![0.0, 0.0, 0.23, 0.77];
+    setup.schmidt = 0.7;
+    setup.controls.convection = Convection::VanLeer;
+    setup.controls.outer_tolerance = 1e-8;
+    setup.controls.linear_tolerance = None;
+    setup.velocity = Vec3::new(0.5, 0.0, 0.0);
+    let mut driver = Driver::new(&mesh, &setup);
+    // Two clouds that overlap, of 10 % each.
+    let cloud = |at: &Vec3, x: f64, y: f64| {
+        0.1 * (-((at.x - x).powi(2) + (at.y - y).powi(2)) / 0.02f64.powi(2)).exp()
+    };
+    let composition = mesh.cell_centre().iter().flat_map(|at| {
+        let (fuel, burnt) = (cloud(at, 0.03, 0.045), cloud(at, 0.04, 0.06));
+        [fuel, burnt, 0.23, 0.77 - fuel - burnt]
+    });
+    driver.gas.start_from(&GasStart {
+        temperature: vec![300.0; mesh.cells()],
+        velocity: vec![setup.velocity; mesh.cells()],
+        pressure: vec![101_325.0; mesh.cells()],
+        composition: composition.collect(),
+        ..GasStart::default()
+    });
+    for _ in 0..10 {
+        let convergence = driver.window(5e-3, 1.0);
+        assert!(convergence.converged && convergence.outer_iterations <= 20);
+    }
 }

@@ -31,6 +31,10 @@ const SCALARS: f64 = 1e-2;
 /// switching may otherwise lead from one iterate to another and back for ever.
 const FOLLOWED: u32 = 8;
 
+/// From this outer iteration on, limiters of species follow by half as much in each iteration as in the one before, so that they come to rest:
+/// one for all species switches between them, and with it the density, for as long as it follows.
+const SETTLED: i32 = 3;
+
 /// Sweeps of reacting species and enthalpy in an outer iteration at most.
 const SWEEPS: u32 = 5;
 
@@ -70,6 +74,8 @@ pub struct Equations {
     pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
     share: f64,
+    /// The same of the limiters of species.
+    limited: f64,
     /// Residual of momentum and continuity.
     flow: f64,
     /// Continuity with the fluxes at hand.
@@ -96,6 +102,7 @@ impl Equations {
             material: CellProperties::default(),
             krylov: Krylov::default(),
             share: 1.0,
+            limited: 1.0,
             flow: f64::INFINITY,
             continuity: ContinuityResidual::default(),
             closer: 1.0,
@@ -125,6 +132,7 @@ impl Equations {
         }
         self.chemistry.begin(frame, begin != Begin::Window);
         self.share = 1.0;
+        self.limited = 1.0;
         self.closer = 1.0;
         self.watch = Stopwatch::of_window(self.windows, frame.grid.cells());
         self.assess_flow(frame, now);
@@ -136,6 +144,7 @@ impl Equations {
             if outer >= FOLLOWED {
                 self.share = 0.5;
             }
+            self.limited = 0.5f64.powi((outer as i32 - SETTLED).max(0));
             // Early iterates may be no state of a gas (after a start from rest a cell may give more than it
             // holds), as long as they are numbers; the last one must be one.
             guard::nonsense(now, &frame.grid.centre)?;
@@ -182,7 +191,7 @@ impl Equations {
         self.react(frame);
         let species = self
             .species
-            .residual(frame, &self.material, self.share, now);
+            .residual(frame, &self.material, self.limited, now);
         self.watch.lap(&mut self.phases.species);
         let carried = &self.species.carried;
         self.enthalpy
@@ -254,7 +263,7 @@ impl Equations {
     ) -> Result<(), GasFailure> {
         let sources = self
             .species
-            .transport(frame, &self.material, self.share, now);
+            .transport(frame, &self.material, self.limited, now);
         self.species.take(frame, now);
         self.enthalpy.reactions = ReactionSource::default();
         let carried = &self.species.carried;
@@ -292,7 +301,7 @@ impl Equations {
         let relative = SCALARS;
         let goal = ScalarTolerance { absolute, relative };
         let (krylov, material) = (&mut self.krylov, &self.material);
-        let solve = (goal, self.share);
+        let solve = (goal, self.limited);
         let solved = self
             .species
             .conserve(frame, material, krylov, solve, elements, now);
@@ -339,7 +348,7 @@ impl Equations {
         now: &mut GasState,
     ) -> u32 {
         let (krylov, material) = (&mut self.krylov, &self.material);
-        let solve = (goal, self.share, assembled);
+        let solve = (goal, self.limited, assembled);
         let iterations = self.species.solve(frame, material, krylov, solve, now);
         self.watch.lap(&mut self.phases.species);
         if assembled == Assembled::No || frame.species() > 0 {

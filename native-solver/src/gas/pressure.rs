@@ -14,7 +14,10 @@
 //! convection owe to the cell's own velocity in [`super::transport`]. Rhie and Chow 1983,
 //! doi 10.2514/3.8284.
 //!
-//! Continuity, for each cell: Σ φ_f = −(ε ρ V − m_old)/Δτ, ρ from the equation of state.
+//! Continuity, for each cell: Σ φ_f = −(ε ρ V − m_old)/Δτ, ρ from the equation of state. What a window leaves of it, the next one makes up
+//! for. A mismatch of r in kg/s changes the velocity by r h/(ρ V), h = V^⅓, within Δt, for which the pressure gradient rises by r h/(V Δt):
+//! in a short window by more than the flow takes, however small r is beside what the cell holds. So r is measured by what the flow's own
+//! pressure gradients and its dynamic pressure ρ u²/h amount to as well.
 
 use calcine_coupler::physics::Vec3;
 use nalgebra::Matrix3;
@@ -42,6 +45,12 @@ const CORRECTION: f64 = 1e-2;
 /// By how much of the difference the gradient that carries pressures along faces follows the slopes of a correction. On tetrahedra and polyhedra
 /// that lean by 45° one part of it overshoots to −1.02 times itself in each; with this share to −0.5 times.
 const FOLLOWED: f64 = 0.75;
+/// A mismatch of continuity may move pressure gradients by so many tolerances of their own.
+const PRESSED: f64 = 100.0;
+/// Gas that nothing moves: this share of what cells hold counts among the terms of continuity at least.
+const STILL: f64 = 1e-4;
+/// A mismatch of so many units of round-off of a cell's terms is none.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Iterations of a solve at most.
 const ITERATIONS: u32 = 2000;
 /// Up to this many cells the incomplete factorisation is used. There it was measured level with the multigrid, which takes half of its time
@@ -83,6 +92,8 @@ impl Approximation {
 pub struct Pressure {
     matrix: Matrix,
     preconditioner: Approximation,
+    /// h = V^⅓ of each cell in m.
+    size: Vec<f64>,
     /// ρ ε χ V/a of each cell in s.
     mobility: Vec<f64>,
     /// b along the normal of each face, of its owner and its neighbour, in s.
@@ -127,6 +138,7 @@ impl Pressure {
         let warp = warp(matrix.grid());
         Self {
             preconditioner: Approximation::new(&matrix),
+            size: matrix.grid().volume.iter().map(|v| v.cbrt()).collect(),
             matrix,
             mobility: vec![0.0; cells],
             along_normal: vec![[0.0; 2]; faces],
@@ -343,17 +355,23 @@ impl Pressure {
         now: &GasState,
     ) -> ContinuityResidual {
         let grid = frame.grid;
-        let [error, through, held] = sums(grid.cells(), |cell| {
+        let [error, through, held, pressed] = sums(grid.cells(), |cell| {
             let (mut net, mut through) = (0.0, 0.0);
             for link in grid.links(cell) {
                 let flux = now.flux[link.face as usize];
                 net += link.sign * flux;
                 through += 0.5 * flux.abs();
             }
+            let held = frame.old.mass[cell] / frame.storage_span;
             let error = (target(frame, material, now, cell) - net).abs();
-            [error, through, frame.old.mass[cell] / frame.storage_span]
+            let round_off = ROUND_OFF * (held + through);
+            let error = if error <= round_off { 0.0 } else { error };
+            let pushed = grid.volume[cell] * now.pressure_gradient[cell].norm();
+            [error, through, held, pushed / self.size[cell]]
         });
-        let terms = through + held;
+        let spans = frame.motion_span / frame.storage_span;
+        let moved = pressed * frame.motion_span + spans * through * through / held;
+        let terms = (through + held).min(PRESSED * moved + STILL * held);
         ContinuityResidual {
             share: (error + self.missed_at_openings(frame, now)) / terms,
             terms,
