@@ -4,4 +4,5 @@ mod conservation;
 mod limits;
 mod orders;
 mod support;
+mod turning;
 mod verification;
