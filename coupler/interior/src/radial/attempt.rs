@@ -13,15 +13,11 @@ use super::transport::{ANY, Outside};
 use super::workspace::{RadialWorkspace, copy_lane, fill_lane};
 
 /// γ of the two stages: L-stable and of second order.
-const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// By how much a second stage continues the first.
-const ONWARDS: f64 = (1.0 - GAMMA) / GAMMA;
-/// Share of an amount of the first stage that the second one must begin with; below it the reactions of the shell go by the end of the step alone.
-const BEGINS_WITH: f64 = 0.1;
+pub(super) const ONWARDS: f64 = (1.0 - GAMMA) / GAMMA;
 /// Share of the gas of a shell by which one gas may be below nothing, as round-off leaves it.
 const ROUND_OFF: f64 = 1e-6;
-/// Share of the solids of a shell that a step must turn over for it to count.
-const COUNTS: f64 = 1e-6;
 /// Steps at most, and the shortest one as a share of the span.
 const MOST_STEPS: usize = 20_000;
 const SHORTEST: f64 = 1e-7;
@@ -30,9 +26,6 @@ const SAFETY: f64 = 0.9;
 /// last rounds square what is left.
 const ROUNDS: usize = 40;
 const UPDATES: usize = 4;
-/// Share of a temperature and of a pressure by which the first guess of the second stage goes beyond the first stage at most.
-const GUESS_WARMED: f64 = 0.05;
-const GUESS_PRESSURE: f64 = 0.5;
 /// Changes that end them, relative to temperature, pressure and the amount of solids.
 const CLOSE: f64 = 1e-8;
 
@@ -79,9 +72,11 @@ pub(super) struct RadialOutcome {
 /// The stage at which a particle is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum StageAt {
-    /// Both of the method, the end of the step alone, and how the particle answers at the end of the window.
+    /// Both of the method, the error of their step through their equations, the end of the step alone, and how the particle answers at
+    /// the end of the window.
     First,
     Second,
+    Error,
     Whole,
     Answer,
 }
@@ -100,6 +95,8 @@ pub(super) struct RadialCourse {
     moved: f64,
     /// Shells that go by the end of the step alone in the second stage.
     fallen: usize,
+    /// Error of what the step turned over, over its tolerance.
+    turned_error: f64,
     pub out: RadialOutcome,
 }
 
@@ -139,6 +136,7 @@ impl RadialPhysics {
             round: 0,
             moved: f64::INFINITY,
             fallen: 0,
+            turned_error: 0.0,
             out: RadialOutcome::default(),
         };
         self.begin(lane, &mut course, ws);
@@ -158,6 +156,10 @@ impl RadialPhysics {
         if course.stage == StageAt::Answer {
             self.answer(lane, outside, ws, &mut course.out);
             return Some(Ok(()));
+        }
+        if course.stage == StageAt::Error {
+            let error = course.turned_error.max(self.smoothed_error(lane, ws));
+            return self.judge(lane, error, course, ws);
         }
         course.round += 1;
         let moved = ws.moved[lane];
@@ -199,6 +201,14 @@ impl RadialPhysics {
                 }
                 self.add(lane, outside, first, ws, &mut course.out);
                 course.out.fallen_back += course.fallen;
+                let [kelvin, turned] = self.errors(lane, ws);
+                if turned <= 1.0 && kelvin > 1.0 {
+                    self.send_error(lane, first, ws);
+                    (course.stage, course.turned_error) = (StageAt::Error, turned);
+                    ws.updating[lane] = 0.0;
+                    return None;
+                }
+                return self.judge(lane, kelvin.max(turned), course, ws);
             }
             StageAt::Second => {
                 // The end of the step alone: positive, and of first order.
@@ -217,8 +227,8 @@ impl RadialPhysics {
             }
             _ => return self.judge(lane, f64::INFINITY, course, ws),
         }
-        let error = self.error(lane, ws);
-        self.judge(lane, error, course, ws)
+        let [kelvin, turned] = self.errors(lane, ws);
+        self.judge(lane, kelvin.max(turned), course, ws)
     }
 
     /// Takes or repeats a step by its error over the tolerances, and begins the next one.
@@ -283,82 +293,6 @@ impl RadialPhysics {
         enter(lane, StageAt::First, course, ws);
     }
 
-    /// The base of the second stage; how many shells go by the end of the step alone.
-    fn continue_base(&self, lane: usize, length: f64, ws: &mut RadialWorkspace) -> usize {
-        let (s, g, r) = (ws.solids, ws.gases, ws.reactions);
-        let mut fallen = 0;
-        for shell in 0..ws.shells {
-            ws.base.enthalpy[shell][lane] =
-                ws.start_enthalpy[shell][lane] + ONWARDS * ws.warmed[shell][lane];
-            let mut short = false;
-            for k in shell * s..(shell + 1) * s {
-                let (start, stage) = (ws.start.amount[k][lane], ws.first_stage.amount[k][lane]);
-                let base = start + ONWARDS * (stage - start);
-                ws.base.amount[k][lane] = base;
-                short |= base < BEGINS_WITH * stage;
-            }
-            ws.base.weight[shell][lane] = if short { length } else { GAMMA * length };
-            let moved = ws.turned[shell * r..(shell + 1) * r].iter();
-            let unreacted = ws.unreacted[shell * s..(shell + 1) * s].iter();
-            let all: f64 = unreacted.map(|own| own[lane]).sum();
-            let reacts = moved.fold(0.0, |most: f64, x| most.max(x[lane].abs())) > COUNTS * all;
-            fallen += usize::from(short && reacts);
-            for place in shell * g..(shell + 1) * g {
-                let start = ws.start_gas[place][lane];
-                let mut made = ws.came[place][lane];
-                if !short {
-                    made = ws.now_gas[place][lane] - start;
-                }
-                ws.base.gas[place][lane] = start + ONWARDS * made;
-            }
-            if short {
-                for k in shell * s..(shell + 1) * s {
-                    ws.base.amount[k][lane] = ws.start.amount[k][lane];
-                }
-                fill_lane(&mut ws.turned[shell * r..(shell + 1) * r], lane, 0.0);
-            }
-        }
-        fallen
-    }
-
-    /// A first guess of the second stage: temperatures and pressures of shells go on as they went, and reactions where that leaves what
-    /// they use.
-    fn guess_onwards(&self, lane: usize, ws: &mut RadialWorkspace) {
-        let (n, s, g, r) = (ws.shells, ws.solids, ws.gases, ws.reactions);
-        let onwards = |start: f64, stage: f64, most: f64| {
-            let most = most * stage.abs();
-            stage + ((1.0 / GAMMA - 1.0) * (stage - start)).clamp(-most, most)
-        };
-        for shell in 0..n {
-            let (start, now) = (&ws.start.temperature, &mut ws.now.temperature[shell][lane]);
-            *now = onwards(start[shell][lane], *now, GUESS_WARMED);
-            for k in shell * g..(shell + 1) * g {
-                let (start, now) = (&ws.start.pressure, &mut ws.now.pressure[k][lane]);
-                *now = onwards(start[k][lane], *now, GUESS_PRESSURE);
-            }
-            let turned = |j: usize| {
-                // Where the reactions of a shell go by the end of the step alone, nothing is turned yet.
-                ws.turned[shell * r + j][lane] / ONWARDS
-            };
-            let mut amounts = [0.0; super::physics::MOST_SOLIDS];
-            let mut leaves = true;
-            for (k, amount) in amounts.iter_mut().enumerate().take(s) {
-                let base = ws.base.amount[shell * s + k][lane];
-                let change = (0..r).map(|j| self.solid_moles[j * s + k] * turned(j));
-                *amount = base + change.sum::<f64>();
-                leaves &= *amount >= BEGINS_WITH * base;
-            }
-            if leaves {
-                for j in 0..r {
-                    ws.now.extent[shell * r + j][lane] = turned(j);
-                }
-                for (k, amount) in amounts.iter().enumerate().take(s) {
-                    ws.now.amount[shell * s + k][lane] = *amount;
-                }
-            }
-        }
-    }
-
     /// True where no shell has less than nothing of a solid or a gas.
     fn is_positive(&self, lane: usize, ws: &RadialWorkspace) -> bool {
         let g = ws.gases;
@@ -407,36 +341,6 @@ impl RadialPhysics {
                 *flow += self.gas_moles[j * g + k] * turned;
             }
         }
-    }
-
-    /// How far a step is from that of first order by its own stages, over the tolerances.
-    fn error(&self, lane: usize, ws: &RadialWorkspace) -> f64 {
-        let (mut volume, mut off) = (0.0, 0.0);
-        for shell in 0..ws.shells {
-            let (start, now) = (
-                ws.start.temperature[shell][lane],
-                ws.now.temperature[shell][lane],
-            );
-            let stage = ws.first_stage.temperature[shell][lane];
-            let own = ws.held.volume[shell][lane];
-            volume += own;
-            off += own * (now - start - (stage - start) / GAMMA).abs();
-        }
-        let mut turned: f64 = 0.0;
-        let all: f64 = ws.unreacted.iter().map(|own| own[lane]).sum();
-        let s = ws.solids;
-        for k in 0..s {
-            let mut sum = 0.0;
-            for shell in 0..ws.shells {
-                let place = shell * s + k;
-                let (start, now) = (ws.start.amount[place][lane], ws.now.amount[place][lane]);
-                sum += now - start - (ws.first_stage.amount[place][lane] - start) / GAMMA;
-            }
-            turned = turned.max(sum.abs());
-        }
-        let numerics = &self.numerics;
-        let kelvin = off / volume / numerics.temperature;
-        kelvin.max(turned / all / numerics.conversion)
     }
 
     /// Means of the window, and how the particle as a whole follows the gas over its span: by one implicit step about its end, of which

@@ -16,6 +16,7 @@ mod equations;
 mod grid;
 pub mod material;
 mod model;
+mod onwards;
 mod physics;
 mod rates;
 mod react;
@@ -23,6 +24,7 @@ mod resolve;
 mod side_by_side;
 mod stage;
 mod state;
+mod step_error;
 mod transport;
 mod workspace;
 

@@ -60,14 +60,6 @@ fn surface(model: &Radial) -> f64 {
     model.bodies(At::Commit).temperature[0]
 }
 
-fn mean(model: &Radial) -> f64 {
-    let row = model.row(0);
-    let shells = 0..model.shells_of(row);
-    shells
-        .map(|k| model.share(row, k) * model.shell_temperature(row, k))
-        .sum()
-}
-
 #[test]
 fn a_stone_that_hot_gas_meets_has_its_shells_from_the_window_in_which_it_does() {
     let (mut auto, mut all) = (stone(true), stone(false));
