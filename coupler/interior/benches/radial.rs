@@ -104,8 +104,10 @@ impl Gas {
     fn of(kelvin: f64, radius: f64, count: usize) -> Self {
         let gas = Mixture::new(["CO2", "N2"]).unwrap();
         Self {
-            // No two particles see the same.
-            temperature: (0..count).map(|p| kelvin + 1e-3 * p as f64).collect(),
+            // No two particles see the same, however many there are.
+            temperature: (0..count)
+                .map(|p| kelvin + 2.0 * p as f64 / count as f64)
+                .collect(),
             pressure: vec![101_325.0; count],
             composition: gas.mass_fractions(&[0.2, 0.8]).repeat(count),
             conductance: vec![100.0 * sphere::surface(radius); count],
