@@ -79,6 +79,7 @@ const ALL: &[(&str, fn())] = &[
     ("hopper", hopper::run),
     ("load", load::run),
     ("moving-bed", moving_bed::run),
+    ("moving-resolved-bed", moving_bed::run_resolved),
     ("repose", repose::run),
     #[cfg(feature = "hdf5")]
     ("restarts", restarts::run),

@@ -104,8 +104,10 @@ impl Gas {
     fn of(kelvin: f64, radius: f64, count: usize) -> Self {
         let gas = Mixture::new(["CO2", "N2"]).unwrap();
         Self {
-            // No two particles see the same.
-            temperature: (0..count).map(|p| kelvin + 1e-3 * p as f64).collect(),
+            // No two particles see the same, however many there are.
+            temperature: (0..count)
+                .map(|p| kelvin + 2.0 * p as f64 / count as f64)
+                .collect(),
             pressure: vec![101_325.0; count],
             composition: gas.mass_fractions(&[0.2, 0.8]).repeat(count),
             conductance: vec![100.0 * sphere::surface(radius); count],
@@ -139,16 +141,25 @@ impl Gas {
                 .map(|p| lines.conductance[p] * (self.temperature[p] - lines.temperature[p]));
             let heat: Vec<f64> = pairs.collect();
             let fractions = &self.composition;
+            // The last gas is what the others leave: its line has no slope.
             let rates: Vec<f64> = (0..2 * count)
                 .map(|at| {
                     lines.slope[at] * if at % 2 == 0 { fractions[at] } else { 0.0 }
                         - lines.offset[at]
                 })
                 .collect();
+            let gas = Mixture::new(["CO2", "N2"]).unwrap();
+            let carry = |at: usize| {
+                let one = &gas.species()[at % 2];
+                -rates[at] * one.molar_mass() * one.enthalpy(lines.released[at / 2])
+            };
+            let carried: Vec<f64> = (0..count)
+                .map(|p| carry(2 * p) + carry(2 * p + 1))
+                .collect();
             let took = Transfer {
                 heat: &heat,
                 network: &network,
-                carried: &vec![0.0; count],
+                carried: &carried,
                 rates: &rates,
             };
             model.settle(&took, span).unwrap();

@@ -11,6 +11,8 @@ use crate::points::linear;
 pub struct HeatCapacity {
     /// Temperatures in K, increasing, and c_p in J/kg/K there.
     points: Vec<(f64, f64)>,
+    /// Slopes beyond the points in J/kg/K², zero at the last.
+    slopes: Vec<f64>,
     /// Enthalpy at the points in J/kg, zero at the first.
     enthalpy: Vec<f64>,
     /// Entropy at the points in J/kg/K, zero at the first.
@@ -32,8 +34,12 @@ impl HeatCapacity {
             enthalpy.push(enthalpy[enthalpy.len() - 1] + area);
             entropy.push(entropy[entropy.len() - 1] + heat_over_temperature(pair[0], pair[1]));
         }
+        let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+        let mut slopes: Vec<f64> = points.windows(2).map(slope).collect();
+        slopes.push(0.0);
         Self {
             points,
+            slopes,
             enthalpy,
             entropy,
         }
@@ -88,10 +94,13 @@ impl HeatCapacity {
         let (first, capacity) = self.points[0];
         let [mut from, mut base] = [first, capacity].map(Lanes::all);
         let (mut slope, mut enthalpy) = (Lanes::default(), Lanes::default());
-        for (k, (point, held)) in self.points.iter().zip(&self.enthalpy).enumerate() {
-            let next = self.points.get(k + 1);
-            let rise = next.map_or(0.0, |next| (next.1 - point.1) / (next.0 - point.0));
-            let [at, of, rise, held] = [point.0, point.1, rise, *held].map(Lanes::all);
+        let known = self.points.iter().zip(&self.slopes).zip(&self.enthalpy);
+        for (k, ((point, rise), held)) in known.enumerate() {
+            // Where all are below, they are below the points that follow.
+            if k > 0 && !temperature.any(|t| t >= point.0) {
+                break;
+            }
+            let [at, of, rise, held] = [point.0, point.1, *rise, *held].map(Lanes::all);
             from = temperature.if_below(at, from, at);
             base = temperature.if_below(at, base, of);
             slope = temperature.if_below(at, slope, rise);

@@ -87,8 +87,8 @@ impl Radial {
         if all > 0.0 { 1.0 - left / all } else { 0.0 }
     }
 
-    /// Sensible enthalpy in J of a row's shells.
-    fn sensible(&self, row: &[f64], shell: usize) -> f64 {
+    /// Sensible enthalpy in J of a shell of a row.
+    pub(super) fn sensible(&self, row: &[f64], shell: usize) -> f64 {
         let kelvin = self.shell_temperature(row, shell);
         let chemistry = &self.physics.chemistry;
         let solids = chemistry.enthalpy(self.shell_amounts(row, shell), kelvin);

@@ -92,6 +92,19 @@ impl<const N: usize> ShellGeometry<N> {
     }
 }
 
+/// The mean of r² of each shell over that of the surface, by the shares of the shells in the volume.
+pub(super) fn mean_squares(shares: &[f64]) -> Vec<f64> {
+    let (mut within, mut inner) = (0.0, 0.0);
+    let one = |share: &f64| {
+        within += share;
+        let outer = f64::cbrt(within);
+        let [square] = mean_square(Lanes([inner]), Lanes([outer])).0;
+        inner = outer;
+        square
+    };
+    shares.iter().map(one).collect()
+}
+
 /// The mean of r² over a shell between two radii in m: 3/5 (b⁵ − a⁵)/(b³ − a³).
 #[inline(always)]
 fn mean_square<const N: usize>(a: Lanes<N>, b: Lanes<N>) -> Lanes<N> {
@@ -120,6 +133,8 @@ mod tests {
             geometry.face[k][0] - inner
         };
         assert!((thick(0) / thick(19) - 4.0).abs() < 1e-9);
+        let squares = mean_squares(&shares).into_iter().zip(shares);
+        assert!((squares.map(|(square, share)| square * share).sum::<f64>() - 0.6).abs() < 1e-14);
     }
 
     #[test]

@@ -16,12 +16,15 @@ mod equations;
 mod grid;
 pub mod material;
 mod model;
+mod onwards;
 mod physics;
 mod rates;
 mod react;
+mod resolve;
 mod side_by_side;
 mod stage;
 mod state;
+mod step_error;
 mod transport;
 mod workspace;
 
@@ -51,6 +54,8 @@ pub struct Radial {
     /// Rows of the last commit, and of the last attempt with what it said.
     committed: Vec<f64>,
     attempt: Vec<f64>,
+    /// Particles that got their shells since the last commit, with the rows that they had.
+    resolved: Vec<(usize, Vec<f64>)>,
     /// True where this window has an attempt, and the span in s of the last one.
     tried: bool,
     last_span: f64,
@@ -103,6 +108,7 @@ impl Radial {
             used_up: 0.0,
             committed: Vec::new(),
             attempt: Vec::new(),
+            resolved: Vec::new(),
             tried: false,
             last_span: 0.0,
             bodies: Default::default(),

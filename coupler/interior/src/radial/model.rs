@@ -36,6 +36,7 @@ impl ParticleModel for Radial {
     }
 
     fn load(&mut self, from: &[Ragged]) -> Result<(), ModelError> {
+        self.resolved.clear();
         let rows = self.count();
         let kinds = kinds(&self.physics);
         let columns = self.columns.clone();
@@ -101,7 +102,8 @@ impl ParticleModel for Radial {
         out: &mut [SurfaceLine],
     ) -> Result<(), ModelError> {
         if !self.tried {
-            self.react(around, span, &[])?;
+            // Without the heat of the network nothing is told of what one shell hides.
+            self.follow(around, span, &[], None)?;
         }
         for (p, line) in out.iter_mut().enumerate() {
             let row = self.attempted(p);
@@ -199,30 +201,18 @@ impl ParticleModel for Radial {
     }
 
     fn begin_again(&mut self) {
+        self.forget_resolved();
         self.begin();
     }
 
     fn commit(&mut self) -> Vec<usize> {
         let (width, told) = (self.layout.width(), self.tell.end());
-        let mut beyond = Vec::new();
         if self.attempt.len() == self.count() * told {
             for (p, row) in self.attempt.chunks_exact(told).enumerate() {
                 self.committed[p * width..(p + 1) * width].copy_from_slice(&row[..width]);
-                let tell = &row[self.tell.from..];
-                let hidden = [tell[TellLayout::HIDDEN], tell[TellLayout::HIDDEN + 1]];
-                if let ShellResolution::Beyond {
-                    temperature,
-                    pressure,
-                } = self.physics.numerics.resolution
-                    && (hidden[0] > temperature || hidden[1] > pressure)
-                {
-                    beyond.push(p);
-                }
             }
         }
-        for p in beyond {
-            self.resolve(p);
-        }
+        self.resolved.clear();
         self.begin();
         let solids = |p: &usize| {
             let row = self.row(*p);
@@ -236,6 +226,7 @@ impl ParticleModel for Radial {
     }
 
     fn change(&mut self, gone: &[usize], new: &[Newcomer<'_>]) -> Result<(), ModelError> {
+        self.forget_resolved();
         let width = self.layout.width();
         let places: Vec<usize> = gone
             .iter()

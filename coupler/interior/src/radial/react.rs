@@ -6,6 +6,7 @@ use calcine_physics::pores::dusty_gas::MOST_GASES;
 use super::Radial;
 use super::attempt::{RadialCourse, RadialOutcome, RadialStalled};
 use super::material::ShellResolution;
+use super::resolve::hidden;
 use super::side_by_side::{LANES, Wide};
 use super::state::{RowLayout, TellLayout};
 use super::transport::{Outside, OutsideLanes};
@@ -17,12 +18,30 @@ use crate::model::Surroundings;
 const CHUNK: usize = 8 * LANES;
 
 impl Radial {
-    /// Follows every particle over a process span in s, each by itself, with the network's heat in W.
+    /// Follows every particle over a process span in s, each by itself, with the network's heat in W. Those of one shell that hide too
+    /// much get their shells, and are followed anew from the start of the window.
     pub(super) fn react(
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
         network: &[f64],
+    ) -> Result<(), ModelError> {
+        self.follow(around, span, network, None)?;
+        let hiding = self.hiding(&self.attempt);
+        if hiding.is_empty() {
+            return Ok(());
+        }
+        hiding.iter().for_each(|&p| self.resolve(p));
+        self.follow(around, span, network, Some(&hiding))
+    }
+
+    /// Follows every particle, or some in ascending order, as they are.
+    pub(super) fn follow(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+        some: Option<&[usize]>,
     ) -> Result<(), ModelError> {
         let width = self.tell.end();
         let mut rows = std::mem::take(&mut self.attempt);
@@ -37,6 +56,7 @@ impl Radial {
                     span,
                     network,
                     from,
+                    some,
                 };
                 let RadialScratch { all, one } = scratch;
                 let all = self.react_some(&seen, rows, all);
@@ -49,7 +69,8 @@ impl Radial {
             },
         );
         let last = self.layout.shells as u64;
-        for row in rows.chunks_exact(width) {
+        let followed = rows.chunks_exact(width).enumerate();
+        for (_, row) in followed.filter(|(p, _)| among(some, *p)) {
             let tell = &row[self.tell.from..];
             let steps = tell[TellLayout::STEPS] as u64;
             let shells = if self.shells_of(row) == 1 { 1 } else { last };
@@ -78,7 +99,10 @@ impl Radial {
         let width = self.tell.end();
         let count = rows.len() / width;
         let shells = ws.shells;
-        let mut waiting = (0..count).filter(|k| self.shells_of(self.row(seen.from + k)) == shells);
+        let mut waiting = (0..count).filter(|k| {
+            let p = seen.from + k;
+            among(seen.some, p) && self.shells_of(self.row(p)) == shells
+        });
         let mut outside: OutsideLanes<'_> = [None; LANES];
         let mut courses: [Option<(usize, RadialCourse)>; LANES] = Default::default();
         let mut failed: Option<(usize, RadialStalled)> = None;
@@ -221,44 +245,11 @@ impl Radial {
         tell[TellLayout::HIDDEN] = hidden[0];
         tell[TellLayout::HIDDEN + 1] = hidden[1];
     }
-
-    /// Gives a particle of one shell all of them, each as the one was.
-    pub(super) fn resolve(&mut self, p: usize) {
-        let (layout, width) = (self.layout, self.layout.width());
-        let row = &mut self.committed[p * width..(p + 1) * width];
-        let (t, n, g) = (
-            layout.temperatures().start,
-            layout.amounts().start,
-            layout.gas().start,
-        );
-        for (shell, share) in self.physics.shares.iter().enumerate().rev() {
-            row[t + shell] = row[t];
-            for k in 0..layout.solids {
-                row[n + shell * layout.solids + k] = share * row[n + k];
-            }
-            for k in 0..layout.gases {
-                row[g + shell * layout.gases + k] = share * row[g + k];
-            }
-        }
-        row[layout.count()] = layout.shells as f64;
-    }
 }
 
-/// What one shell hides: the difference in K between centre and surface of a parabola with the heat that passes the surface, and that of
-/// the partial pressure of a gas over the pressure, with the flow that does. The mean of a parabola lies 2/5 of it above the surface.
-fn hidden(lane: usize, ws: &RadialWorkspace, outside: &Outside<'_>) -> [f64; 2] {
-    const WHOLE: f64 = 2.5;
-    let now = &ws.start;
-    let kelvin = WHOLE * (now.temperature[0][lane] - now.temperature[1][lane]).abs();
-    let g = ws.gases;
-    let drops = (0..g).map(|k| (now.pressure[k][lane] - now.pressure[g + k][lane]).abs());
-    let most = drops.fold(0.0, f64::max);
-    let share = if g > 0 {
-        WHOLE * most / outside.pressure
-    } else {
-        0.0
-    };
-    [kelvin, share]
+/// True of a particle that is to be followed: of all, or of some in ascending order.
+fn among(some: Option<&[usize]>, p: usize) -> bool {
+    some.is_none_or(|some| some.binary_search(&p).is_ok())
 }
 
 /// What the particles of a chunk see.
@@ -267,8 +258,9 @@ struct SeenByChunk<'a> {
     around: &'a Surroundings<'a>,
     span: f64,
     network: &'a [f64],
-    /// The first of them.
+    /// The first of them, and which particles are followed if not all are.
     from: usize,
+    some: Option<&'a [usize]>,
 }
 
 /// Memory of a thread.

@@ -3,5 +3,7 @@
 mod conservation;
 mod limits;
 mod orders;
+mod steps;
 mod support;
+mod turning;
 mod verification;

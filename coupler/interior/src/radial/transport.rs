@@ -289,6 +289,9 @@ fn inner_share(number: Wide) -> Wide {
         sum = sum * square + *coefficient;
     }
     let near = number * sum + 0.5;
+    if !number.any(|x| x.abs() >= 0.5) {
+        return near;
+    }
     let far = (-(-number).exp() + 1.0).inverse() - number.inverse();
     number.abs().if_below(Wide::all(0.5), near, far)
 }

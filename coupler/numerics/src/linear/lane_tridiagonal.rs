@@ -42,46 +42,66 @@ impl<const N: usize> LaneTridiagonal<N> {
     #[inline(always)]
     pub fn solve<const B: usize>(&mut self, entries: &[Lanes<N>], right: &mut [Lanes<N>]) {
         let b = if B == 0 { self.block } else { B };
+        for row in 0..self.rows {
+            let own = 3 * row * b * b..3 * (row + 1) * b * b;
+            self.eliminate_row::<B>(row, &entries[own], right);
+        }
+        self.substitute::<B>(right);
+    }
+
+    /// Eliminates a row of blocks, of these entries, after the one before it.
+    #[inline(always)]
+    fn eliminate_row<const B: usize>(
+        &mut self,
+        row: usize,
+        entries: &[Lanes<N>],
+        right: &mut [Lanes<N>],
+    ) {
+        let b = if B == 0 { self.block } else { B };
         let (size, width) = (b * b, 2 * b + 1);
         let work = &mut self.work[..b * width];
-        for row in 0..self.rows {
-            let own = &entries[3 * row * size..3 * (row + 1) * size];
-            let (lower, rest) = own.split_at(size);
-            let (diagonal, upper) = rest.split_at(size);
-            let last = row + 1 == self.rows;
-            for i in 0..b {
-                for j in 0..b {
-                    let mut value = diagonal[i * b + j];
-                    if row > 0 {
-                        let before = &self.above[(row - 1) * size..row * size];
-                        for k in 0..b {
-                            value -= lower[i * b + k] * before[k * b + j];
-                        }
-                    }
-                    work[i * width + j] = value;
-                    work[i * width + b + j] = if last {
-                        Lanes::all(if i == j { 1.0 } else { 0.0 })
-                    } else {
-                        upper[i * b + j]
-                    };
-                }
-                let mut value = right[row * b + i];
+        let (lower, rest) = entries[..3 * size].split_at(size);
+        let (diagonal, upper) = rest.split_at(size);
+        let last = row + 1 == self.rows;
+        for i in 0..b {
+            for j in 0..b {
+                let mut value = diagonal[i * b + j];
                 if row > 0 {
+                    let before = &self.above[(row - 1) * size..row * size];
                     for k in 0..b {
-                        value -= lower[i * b + k] * right[(row - 1) * b + k];
+                        value -= lower[i * b + k] * before[k * b + j];
                     }
                 }
-                work[i * width + 2 * b] = value;
+                work[i * width + j] = value;
+                work[i * width + b + j] = if last {
+                    Lanes::all(if i == j { 1.0 } else { 0.0 })
+                } else {
+                    upper[i * b + j]
+                };
             }
-            eliminate(work, b, width);
-            let above = &mut self.above[row * size..(row + 1) * size];
-            for i in 0..b {
-                for j in 0..b {
-                    above[i * b + j] = work[i * width + b + j];
+            let mut value = right[row * b + i];
+            if row > 0 {
+                for k in 0..b {
+                    value -= lower[i * b + k] * right[(row - 1) * b + k];
                 }
-                right[row * b + i] = work[i * width + 2 * b];
             }
+            work[i * width + 2 * b] = value;
         }
+        eliminate(work, b, width);
+        let above = &mut self.above[row * size..(row + 1) * size];
+        for i in 0..b {
+            for j in 0..b {
+                above[i * b + j] = work[i * width + b + j];
+            }
+            right[row * b + i] = work[i * width + 2 * b];
+        }
+    }
+
+    /// The solution, of right sides as elimination left them.
+    #[inline(always)]
+    fn substitute<const B: usize>(&self, right: &mut [Lanes<N>]) {
+        let b = if B == 0 { self.block } else { B };
+        let size = b * b;
         for row in (0..self.rows - 1).rev() {
             let above = &self.above[row * size..(row + 1) * size];
             for i in 0..b {
@@ -102,6 +122,9 @@ pub fn eliminate<const N: usize>(rows: &mut [Lanes<N>], b: usize, width: usize) 
     for k in 0..b {
         for i in k + 1..b {
             let (own, other) = (rows[k * width + k].abs(), rows[i * width + k].abs());
+            if !(other - own).any(|more| more > 0.0) {
+                continue;
+            }
             for j in k..width {
                 let (one, next) = (rows[k * width + j], rows[i * width + j]);
                 rows[k * width + j] = own.if_below(other, next, one);

@@ -240,3 +240,12 @@ pub fn flue_gas(kelvin: f64) -> Still {
         network: 0.0,
     }
 }
+
+/// Mean temperature of the first particle in K, over the volume with which it came.
+pub fn mean(model: &Radial) -> f64 {
+    let row = model.row(0);
+    let shells = 0..model.shells_of(row);
+    shells
+        .map(|k| model.share(row, k) * model.shell_temperature(row, k))
+        .sum()
+}
