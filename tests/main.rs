@@ -37,6 +37,7 @@ mod laws;
 mod liggghts_script;
 mod lost_particles;
 mod measures;
+mod meshes_told;
 mod momentum_models;
 mod moving_beds;
 mod moving_heat;

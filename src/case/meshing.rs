@@ -14,6 +14,7 @@ use calcine_coupler::mesh::periodic::PeriodicError;
 use calcine_coupler::mesh::polymesh::{self, PolyMeshError};
 use calcine_coupler::mesh::refine::refine;
 use calcine_coupler::mesh::{Mesh, MeshError};
+use calcine_coupler::physics::Vec3;
 use thiserror::Error;
 
 use super::model::MeshSpec;
@@ -62,6 +63,19 @@ pub enum MeshingError {
         /// What to do.
         remedy: &'static str,
     },
+    /// Two cells on one side of the face between them.
+    #[error(
+        "the mesh is folded in cell {cell} at ({:.4}, {:.4}, {:.4}) m: the line to the next cell makes {angle:.1} degrees with the normal of the face \
+         between them, so that both lie on one side of it; mesh anew (`checkMesh` lists such faces)", at.x, at.y, at.z
+    )]
+    Folded {
+        /// The cell that owns the face.
+        cell: usize,
+        /// Its centre in m.
+        at: Vec3,
+        /// In degrees.
+        angle: f64,
+    },
     /// Particles that move in a plane or axisymmetric flow.
     #[error(
         "the gas is one cell deep between patches that are `{kind}`, and `{population}` moves: particles move in three dimensions; use \
@@ -84,6 +98,18 @@ pub enum MeshingError {
         /// In Pa/m.
         gradient: f64,
     },
+}
+
+/// The mesh, if no two cells lie on one side of the face between them.
+fn unfolded(mesh: Mesh) -> Result<Mesh, MeshingError> {
+    match mesh.quality() {
+        Some(quality) if quality.angle.value >= 90.0 => Err(MeshingError::Folded {
+            cell: quality.angle.cell,
+            at: quality.angle.centre,
+            angle: quality.angle.value,
+        }),
+        _ => Ok(mesh),
+    }
 }
 
 /// Generates or reads the gas mesh: graded first, then refined in its zones, then bodies are cut out, then
@@ -128,7 +154,7 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
             })?;
             (made, refine, cut, openings)
         }
-        MeshSpec::PolyMesh(directory) => return Ok(polymesh::read(directory)?),
+        MeshSpec::PolyMesh(directory) => return unfolded(polymesh::read(directory)?),
     };
     let made = if zones.is_empty() {
         made

@@ -96,12 +96,16 @@ fn far_pressures(case: &Case) -> Vec<String> {
         return Vec::new();
     }
     let start = case.gas.pressure;
-    let far = |pressure: f64| pressure > FAR * start || start > FAR * pressure;
-    let patches = open(case)
-        .into_iter()
-        .filter(|(_, pressure, _)| far(*pressure));
+    let far = |pressure: &f64| *pressure > FAR * start || start > FAR * pressure;
+    let patches = case.gas.patches.iter().filter_map(|(name, patch)| {
+        let (GasPatch::Outlet { pressure, .. } | GasPatch::Opening { pressure, .. }) = patch else {
+            return None;
+        };
+        let mut entries = pressure.0.iter().map(|entry| entry.1);
+        Some((name, entries.find(far)?))
+    });
     patches
-        .map(|(name, pressure, _)| {
+        .map(|(name, pressure)| {
             format!(
                 "`{name}` has a pressure of {} Pa, but `gas.initial.pressure` is {} Pa, which its density follows: the patch \
                  sets the level of the pressures alone; write the same in both",

@@ -565,7 +565,7 @@ impl Recorder {
     }
 }
 
-/// Energy in J that moves a kg of particles below which none does.
+/// Energy in J that moves a kg of particles and gas below which none does.
 const STILL: f64 = 1e-6;
 
 /// Share of what feeds should bring that may wait at the end of a run.
@@ -619,6 +619,12 @@ fn open_balance(moment: &CommittedState<'_>) -> Option<Finding> {
     let mass: f64 = (0..particles.len())
         .map(|row| particles.row_mass(row))
         .sum();
+    let cells = moment.gas.density.iter().zip(moment.mesh.cell_volume());
+    let gas: f64 = cells
+        .zip(&moment.bed.void_fraction[..])
+        .map(|((density, volume), pores)| density * pores * volume)
+        .sum();
+    let mass = mass + gas;
     let energy = match ledger.energy.throughput > STILL * mass {
         true => ledger.energy.relative_error(),
         false => 0.0,

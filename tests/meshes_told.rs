@@ -1,0 +1,107 @@
+//! Meshes of files that are folded or too large, and pressures of outlets over time: what `check` says of them.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::results::Summary;
+
+use crate::support::blocks::{Block, even};
+
+/// A case of an empty duct in a mesh of a file whose points are moved.
+fn duct(folder: &Path, shape: &dyn Fn([f64; 3]) -> [f64; 3]) -> PathBuf {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/validate/skewed-meshes.toml");
+    let case = folder.join("case.toml");
+    fs::copy(source, &case).unwrap();
+    let block = Block {
+        levels: [even(4), even(2), even(6)],
+        patches: ["side", "side", "side", "side", "bottom", "top"],
+        hole: None,
+        shape,
+    };
+    block.write(folder);
+    case
+}
+
+/// Exit code and all that is printed.
+fn calcine(folder: &Path, words: &[&str], set: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.current_dir(folder).args(words);
+    command.args(["--set", "particles[0].place.grid.first=20.1 2.6 10.3 mm"]);
+    for setting in set {
+        command.args(["--set", setting]);
+    }
+    let output = command.output().unwrap();
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code(), String::from_utf8(text).unwrap())
+}
+
+/// In m.
+const SIZE: [f64; 3] = [0.06, 0.01, 0.1];
+
+fn upright(at: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| at[axis] * SIZE[axis])
+}
+
+#[test]
+fn a_mesh_that_is_folded_is_refused_with_the_place() {
+    let folder = tempfile::tempdir().unwrap();
+    // The point in the middle lies two layers and a half too high.
+    let folded = |at: [f64; 3]| {
+        let middle = at.iter().all(|level| (level - 0.5).abs() < 1e-9);
+        let rise = if middle { 2.5 / 6.0 } else { 0.0 };
+        upright([at[0], at[1], at[2] + rise])
+    };
+    duct(folder.path(), &folded);
+    let (code, said) = calcine(folder.path(), &["check", "case.toml"], &[]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("folded in cell") && said.contains("checkMesh"),
+        "{said}"
+    );
+}
+
+#[test]
+fn check_prints_where_the_mesh_of_a_file_begins_and_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    let (code, said) = calcine(folder.path(), &["check", "case.toml"], &[]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("from (0, 0, 0) to (0.06, 0.01, 0.1) m"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_pressure_that_leaves_that_of_the_start_is_warned_of_over_time_too() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    let falls = "gas.patch.top.outlet.pressure=[[\"0 s\", \"1 atm\"], [\"1 s\", \"0.5 atm\"]]";
+    let (_, said) = calcine(folder.path(), &["check", "case.toml"], &[falls]);
+    assert!(
+        said.contains("`top` has a pressure of 50662.5 Pa"),
+        "{said}"
+    );
+}
+
+#[test]
+fn round_off_of_gas_whose_heat_does_not_move_is_no_open_balance() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    let still = [
+        "gas.patch.bottom={ symmetry = {} }",
+        "gas.patch.top={ symmetry = {} }",
+        "time.end=50 ms",
+    ];
+    let (code, said) = calcine(
+        folder.path(),
+        &["run", "case.toml", "--out", "out", "--quiet"],
+        &still,
+    );
+    assert_eq!(code, Some(0), "{said}");
+    let summary = Summary::read(&folder.path().join("out")).unwrap();
+    assert!(!summary.warnings.contains_key("open_balance"), "{said}");
+}
