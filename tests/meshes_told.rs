@@ -105,3 +105,24 @@ fn round_off_of_gas_whose_heat_does_not_move_is_no_open_balance() {
     let summary = Summary::read(&folder.path().join("out")).unwrap();
     assert!(!summary.warnings.contains_key("open_balance"), "{said}");
 }
+
+#[test]
+fn central_convection_of_fast_gas_in_coarse_cells_that_lean_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &|at| {
+        let [x, y, z] = upright(at);
+        [x + z, y, z]
+    });
+    let place = "particles[0].place.grid.first=30.1 2.6 10.3 mm";
+    let said = |scheme: &str| {
+        let convection = format!("gas.controls.convection={scheme}");
+        calcine(
+            folder.path(),
+            &["check", "case.toml"],
+            &[place, &convection],
+        )
+        .1
+    };
+    assert!(said("central").contains("lean by up to 45 degrees"));
+    assert!(!said("van-leer").contains("central convection"));
+}

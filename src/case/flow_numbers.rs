@@ -6,7 +6,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::physics::pressure_drop::{ergun, minimum_fluidisation};
 use calcine_coupler::physics::sphere;
-use calcine_coupler::setup::{GasPatch, ParticleSetup, Schedule};
+use calcine_coupler::setup::{Convection, GasPatch, ParticleSetup, Schedule};
 
 use super::model::{Case, MotionSpec};
 use super::packed::BedPacking;
@@ -22,6 +22,10 @@ const PRESSURE_SHARE: f64 = 0.1;
 const PACKED: f64 = 0.35;
 /// Fewest particles of which a bed is made.
 const FEWEST: usize = 20;
+/// Angle in degrees and Reynolds number of a cell above which central convection is warned of: at 42 degrees and 200 velocities were 1.7
+/// times what other schemes have, up to 66 within 2 %.
+const LEANS: f64 = 20.0;
+const WAVY: f64 = 100.0;
 /// Share of the length of an axis that the way from inlets to outlets must have along it to be called that of the flow.
 const ALONG: f64 = 0.9;
 
@@ -37,6 +41,10 @@ pub(super) struct FlowNumbers {
     residence: f64,
     /// Windows over that time, on the process clock.
     windows: f64,
+    /// Largest Reynolds number of a cell at an inlet's speed.
+    cell_reynolds: f64,
+    /// By how many degrees cells lean at most.
+    leaning: f64,
     bed: Option<BedNumbers>,
 }
 
@@ -86,12 +94,18 @@ impl FlowNumbers {
         let window = case.time.motion_window.seconds();
         let size = (room / mesh.cells() as f64).cbrt();
         let at_inlets = inlets.iter().map(|one| one.crossed * window);
+        let density = gas
+            .properties
+            .density(gas.pressure, temperature, &gas.composition);
         Some(Self {
             speed,
             mach: sound.map(|sound| fastest / sound),
             courant: at_inlets.fold(in_bed * window / size, f64::max),
             residence,
             windows: window * case.time.acceleration.largest() / residence,
+            cell_reynolds: speed * size * density
+                / gas.properties.viscosity(temperature, &gas.composition),
+            leaning: mesh.quality().map_or(0.0, |quality| quality.angle.value),
             bed,
         })
     }
@@ -142,6 +156,19 @@ impl FlowNumbers {
                  low-Mach flow leaves out; lower the flow, or check its unit",
                 short3(mach),
                 short3(self.speed)
+            ));
+        }
+        if let Convection::Central(share) = case.gas.controls.convection
+            && share > 0.5
+            && self.leaning > LEANS
+            && self.cell_reynolds > WAVY
+        {
+            all.push(format!(
+                "central convection at a cell Reynolds number of about {} on cells that lean by up to {:.0} degrees: it does not damp what \
+                 such cells excite, and velocities may grow beyond any bound; write gas.controls.convection = \"van-leer\", or a \
+                 finer mesh",
+                short3(self.cell_reynolds),
+                self.leaning
             ));
         }
         let Some(bed) = &self.bed else {
