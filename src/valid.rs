@@ -5,12 +5,13 @@ use std::path::Path;
 use thiserror::Error;
 
 use crate::assembly::{
-    AssemblyError, GasBackend, Pairing, PreparedCase, native_parts, write_inputs,
+    AssemblyError, GasBackend, Pairing, PreparedCase, check_for_liggghts, native_parts,
+    write_inputs,
 };
 use crate::case::model::Case;
 use crate::case::packed::BedPacking;
 use crate::case::warnings::warnings;
-use crate::case::{CaseErrors, located, read_with, settle};
+use crate::case::{CaseErrors, check_report, located, read_with, settle};
 use crate::laws::LawCatalogue;
 use crate::results::{self, ResultsError};
 
@@ -76,6 +77,20 @@ impl ValidCase {
             prepared,
             packing,
         })
+    }
+
+    /// The case in words: clocks, sizes, the flow, and whether LIGGGHTS can move its particles.
+    pub fn report(&self) -> String {
+        let (case, prepared) = (&self.case, &self.prepared);
+        let refused = check_for_liggghts(case, prepared).err();
+        let refused = refused.map(|error| crate::error_chain::chain(&error));
+        check_report(
+            case,
+            &prepared.mesh,
+            &prepared.particles,
+            &self.packing,
+            refused.as_deref(),
+        )
     }
 
     /// Refuses what the solvers of a pairing would refuse at their start: makes the native ones, and writes the inputs

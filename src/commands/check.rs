@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::console::say;
-use super::failure::{Failure, chain};
+use super::failure::Failure;
 use super::parallel::crowded;
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts, check_for_liggghts};
-use crate::case::{check_report, contacts};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
+use crate::case::contacts;
 use crate::exit;
 use crate::progress::preparing;
 use crate::valid::ValidCase;
@@ -38,20 +38,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     valid.honoured_by(pairing)?;
     let starts = SolverStarts::of(&valid.case, pairing);
     valid.case.warnings.extend(crowded(&starts, pairing));
-    let ValidCase {
-        case,
-        prepared,
-        packing,
-    } = &valid;
-    let refused = check_for_liggghts(case, prepared).err();
-    let refused = refused.map(|error| chain(&error));
-    say(check_report(
-        case,
-        &prepared.mesh,
-        &prepared.particles,
-        packing,
-        refused.as_deref(),
-    ))?;
+    say(valid.report())?;
+    let ValidCase { case, prepared, .. } = &valid;
     if let Some(text) = contacts::report(case, &prepared.mesh, &prepared.particles) {
         say(text)?;
     }

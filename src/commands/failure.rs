@@ -58,11 +58,7 @@ impl From<AssemblyError> for Failure {
 
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
-        let remedy = error
-            .remedy()
-            .map(|help| format!("\n  help: {help}"))
-            .unwrap_or_default();
-        Failure::new(error.exit_code(), chain(&error) + &remedy)
+        Failure::new(error.exit_code(), error.told())
     }
 }
 

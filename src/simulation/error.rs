@@ -182,6 +182,12 @@ impl SimulationError {
         }
     }
 
+    /// The error with its causes and what to do about it: the words that `calcine` prints.
+    pub fn told(&self) -> String {
+        let remedy = self.remedy().map(|help| format!("\n  help: {help}"));
+        crate::error_chain::chain(self) + &remedy.unwrap_or_default()
+    }
+
     /// What to do about it, where the message does not say so itself.
     pub fn remedy(&self) -> Option<String> {
         match self {
