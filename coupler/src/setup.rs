@@ -115,13 +115,6 @@ pub enum Convection {
     LimitedLinear(f64),
 }
 
-impl Convection {
-    /// True if velocity and enthalpy are limited, so that values between those around them result.
-    pub fn limits(self) -> bool {
-        matches!(self, Self::VanLeer | Self::LimitedLinear(_))
-    }
-}
-
 /// A composition over process time: (time in s, mass fractions in the order of the mixture's
 /// species) entries with increasing times, at least one; linear in between, constant outside.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,23 +13,15 @@
 //
 // `calcineLinear`: linear interpolation to the centre of the face, beyond that to where the line between the centres meets it by the gradients
 // of fvSchemes on both sides. OpenFOAM's `skewCorrected linear` takes Gauss' gradients, which are not exact for linear fields on tetrahedra.
-//
-// `calcineVanLeer`, `calcineLimitedLinear k`: OpenFOAM's `vanLeer` and `limitedLinear k` of a scalar f, with the gradient `grad(bounded(f))` of
-// fvSchemes for the value upstream. `cellLimited calcineLeastSquares 1` for it is zero where a cell has the largest or least value of those
-// beside it, so that no new extremes arise on any mesh.
 #include "obliqueSchemes.H"
 #include "emptyPolyPatch.H"
 #include "extrapolatedCalculatedFvPatchField.H"
 #include "gaussGrad.H"
 #include "gradScheme.H"
-#include "LimitedScheme.H"
-#include "limitedLinear.H"
 #include "linear.H"
-#include "NVDTVD.H"
 #include "skewCorrectionVectors.H"
 #include "snGradScheme.H"
 #include "surfaceFields.H"
-#include "vanLeer.H"
 #include "volFields.H"
 
 namespace Foam
@@ -312,30 +304,6 @@ public:
         return ways & linear<GradType>(mesh).interpolate(fv::gradientOf(field));
     }
 };
-
-
-namespace limitFuncs
-{
-
-// The field itself by another name, for which fvSchemes has a gradient of its own.
-template<class Type>
-class bounded
-{
-public:
-
-    tmp<GeometricField<Type, fvPatchField, volMesh>> operator()
-    (
-        const GeometricField<Type, fvPatchField, volMesh>& field
-    ) const
-    {
-        return GeometricField<Type, fvPatchField, volMesh>::New("bounded(" + field.name() + ')', field);
-    }
-};
-
-} // End namespace limitFuncs
-
-makeLimitedSurfaceInterpolationTypeScheme(calcineVanLeer, vanLeerLimiter, NVDTVD, bounded, scalar)
-makeLimitedSurfaceInterpolationTypeScheme(calcineLimitedLinear, limitedLinearLimiter, NVDTVD, bounded, scalar)
 
 makeSurfaceInterpolationTypeScheme(calcineLinear, scalar)
 makeSurfaceInterpolationTypeScheme(calcineLinear, vector)

@@ -276,9 +276,6 @@ fn suited(schemes: &str, mesh: &Mesh) -> String {
         return schemes.to_owned();
     }
     [
-        ("calcineVanLeer;", "vanLeer;"),
-        ("calcineLimitedLinear ", "limitedLinear "),
-        ("cellLimited calcineLeastSquares 1;", "Gauss linear;"),
         ("calcineLeastSquares;", "Gauss linear;"),
         ("calcineCorrected;", "orthogonal;"),
         ("corrected;", "orthogonal;"),

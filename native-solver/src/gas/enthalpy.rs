@@ -23,9 +23,7 @@ use super::tolerance::ScalarTolerance;
 use crate::numerics::convection::beyond_upwind;
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{
-    bound, conductance, displacement, follow, gradients, interpolate,
-};
+use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
 use crate::numerics::parallel::{fill, sum, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -339,9 +337,6 @@ impl Enthalpy {
             };
             let (found, faces) = (&mut self.gradients[0], &mut self.faces);
             gradients(grid, &now.enthalpy, boundary, found, faces);
-            if frame.convection.limits() {
-                bound(grid, &now.enthalpy, boundary, found);
-            }
         }
         if !grid.orthogonal {
             let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {

@@ -33,7 +33,7 @@ const FOLLOWED: u32 = 8;
 
 /// From this outer iteration on, limiters of species follow by half as much in each iteration as in the one before, so that they come to rest:
 /// one for all species switches between them, and with it the density, for as long as it follows.
-const SETTLED: i32 = 3;
+const SETTLED: i32 = 8;
 
 /// Sweeps of reacting species and enthalpy in an outer iteration at most.
 const SWEEPS: u32 = 5;

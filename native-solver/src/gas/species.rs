@@ -23,9 +23,7 @@ use super::tolerance::{Assembled, ScalarTolerance};
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{
-    bound, conductance, displacement, follow, gradients, interpolate,
-};
+use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -42,8 +40,6 @@ pub struct SpeciesEquations {
     /// Mass fractions of the iterate, species by species: one list of cells each.
     fractions: Vec<Vec<f64>>,
     gradients: Vec<Vec<Vec3>>,
-    /// The same, bounded, for the limiter; empty where lines between centres are normal to faces.
-    bounded: Vec<Vec<Vec3>>,
     limiters: Vec<f64>,
     faces: Vec<f64>,
     /// Flow of each species out of the owner of each face in kg/s, of what is taken explicitly.
@@ -71,7 +67,6 @@ impl SpeciesEquations {
             diffusion: Vec::new(),
             fractions: Vec::new(),
             gradients: Vec::new(),
-            bounded: Vec::new(),
             limiters: Vec::new(),
             faces: Vec::new(),
             explicit: Vec::new(),
@@ -92,9 +87,6 @@ impl SpeciesEquations {
         }
         self.fractions.resize(species, vec![0.0; cells]);
         self.gradients.resize(species, vec![Vec3::zeros(); cells]);
-        if !frame.grid.orthogonal {
-            self.bounded.resize(species, vec![Vec3::zeros(); cells]);
-        }
         self.explicit.resize(species, vec![0.0; faces]);
         self.boundary.resize(species, [0.0; 2]);
         self.diffusion.resize(faces, 0.0);
@@ -246,17 +238,9 @@ impl SpeciesEquations {
                     |index: usize, inner: f64| inflow::face_fraction(frame, index, k, inner);
                 let found = &mut self.gradients[k];
                 gradients(grid, fractions, boundary, found, &mut self.faces);
-                if let Some(bounded) = self.bounded.get_mut(k) {
-                    bounded.copy_from_slice(found);
-                    bound(grid, fractions, boundary, bounded);
-                }
             }
         }
         let (fractions, gradients) = (&self.fractions, &self.gradients);
-        let upstream = match grid.orthogonal {
-            true => gradients,
-            false => &self.bounded,
-        };
         let limiting = |index: usize| {
             if !second || index >= grid.internal {
                 return 0.0;
@@ -265,7 +249,7 @@ impl SpeciesEquations {
             let last = fractions.len() - 1;
             let one = |k: usize| {
                 let noise = if k == last { frame.tolerance } else { 0.0 };
-                let fields = (&fractions[k][..], &upstream[k][..]);
+                let fields = (&fractions[k][..], &gradients[k][..]);
                 limiter(grid, index, now.flux[index], fields, noise)
             };
             (0..fractions.len()).map(one).fold(2.0, f64::min)
@@ -348,9 +332,6 @@ impl SpeciesEquations {
             };
             let (found, faces) = (&mut self.temperature_gradients, &mut self.faces);
             gradients(grid, &now.temperature, boundary, found, faces);
-            if frame.convection.limits() {
-                bound(grid, &now.temperature, boundary, found);
-            }
         }
         let mut carried = std::mem::take(&mut self.carried);
         fill(&mut carried, |index| {

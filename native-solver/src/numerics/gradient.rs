@@ -10,7 +10,7 @@ use nalgebra::Matrix3;
 
 use super::grid::{CellFace, MeshGraph};
 use super::least_squares::{self, Normal};
-use super::parallel::{fill, update};
+use super::parallel::fill;
 
 /// What is beside a cell at a face of the boundary.
 #[derive(Clone, Copy, Debug)]
@@ -82,40 +82,6 @@ pub fn vector(
             |weighted, difference| sum += difference * weighted.transpose(),
         );
         sum * inverse
-    });
-}
-
-/// Shortens the gradients of a scalar so that none leads to a value at the centre of a face of its cell beyond those of the cells beside it
-/// and of the boundary (Barth and Jespersen 1989, doi 10.2514/6.1989-366): zero where a cell has the largest or least value, so that a
-/// limiter that takes the value upstream from it is upwind there on any mesh.
-pub fn bound(
-    grid: &MeshGraph,
-    values: &[f64],
-    boundary: impl Fn(usize, f64) -> Beside<f64> + Sync,
-    gradients: &mut [Vec3],
-) {
-    update(gradients, |cell, gradient| {
-        let own = values[cell];
-        let (mut below, mut above) = (0.0f64, 0.0f64);
-        for link in grid.links(cell) {
-            let difference = match link.is_boundary() {
-                true => match boundary(link.face as usize, own) {
-                    Beside::AtFace(value) | Beside::AtFoot(value) => value - own,
-                },
-                false => values[link.other as usize] - own,
-            };
-            (below, above) = (below.min(difference), above.max(difference));
-        }
-        let mut share = 1.0f64;
-        for link in grid.links(cell) {
-            let change = gradient.dot(&to_face(grid, link));
-            if change > above {
-                share = share.min(above / change);
-            } else if change < below {
-                share = share.min(below / change);
-            }
-        }
-        *gradient *= share;
     });
 }
 

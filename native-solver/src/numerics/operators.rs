@@ -66,21 +66,6 @@ pub fn gradients(
     fill(gradients, |cell| by_gauss(grid, faces, cell));
 }
 
-/// Shortens such gradients for a limiter ([`gradient::bound`]) where lines between centres are not normal to faces; elsewhere the value
-/// upstream that they lead to is that of a cell.
-pub fn bound(
-    grid: &MeshGraph,
-    values: &[f64],
-    boundary: impl Fn(usize, f64) -> Option<f64> + Sync,
-    gradients: &mut [Vec3],
-) {
-    if grid.orthogonal {
-        return;
-    }
-    let beside = |index: usize, inner: f64| Beside::AtFace(boundary(index, inner).unwrap_or(inner));
-    gradient::bound(grid, values, beside, gradients);
-}
-
 /// Explicit part of n·∇ at a face, times the face's distance: what the plain difference across
 /// the face has too much because the centres are displaced along the face.
 #[inline]
