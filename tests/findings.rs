@@ -214,7 +214,7 @@ fn iterations_that_end_at_their_limits_are_counted_over_a_resume_and_told_of_onc
     let out = directory.path().join("out");
     let start = |resume| {
         let keys = [
-            "gas.controls={ outer_iterations = 1 }",
+            "gas.controls={ outer_iterations = 1, outer_tolerance = 1e-8 }",
             "coupling.exchange={ attempts = 1, tolerance = 1e-12, cuts = 0 }",
         ];
         let builder = Simulation::open(good("reactions")).out(&out);

@@ -51,6 +51,7 @@ fn lets_go(particles: &str) {
         "time.acceleration=[[\"0 s\", 1], [\"0.6 s\", 20], [\"1.6 s\", 1]]",
         "motion.held=[[\"0.6 s\", \"1.6 s\"]]",
         "output.every=0.2 s",
+        "gas.controls.outer_tolerance=1e-8",
     ];
     let (case, out) = (program::shipped("settled-bed"), folder.path().join("held"));
     program::run(&case, &out, &["--particles", particles], &set);

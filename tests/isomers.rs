@@ -382,7 +382,7 @@ gas = ["temperature", "mass_fractions"]
                 directory.path(),
                 &format!("{gas}-{name}"),
                 text,
-                &["--gas", gas],
+                &["--gas", gas, "--set", "gas.controls.outer_tolerance=1e-8"],
             );
             let files = read::collection(&out, "gas.pvd").unwrap();
             read::arrays(&files.last().unwrap().1).unwrap()

@@ -110,7 +110,8 @@ fn run(directory: &Path, name: &str, temperature: &str, words: &[&str], end: &st
     let file = directory.join(format!("{name}.toml"));
     fs::write(&file, case(temperature)).unwrap();
     let out = directory.join(name);
-    program::run(&file, &out, words, &[format!("time.end={end}")]);
+    let tolerance = "gas.controls.outer_tolerance=1e-8".to_owned();
+    program::run(&file, &out, words, &[format!("time.end={end}"), tolerance]);
     Summary::read(&out).unwrap()
 }
 

@@ -119,6 +119,7 @@ fn a_window_over_which_the_gas_of_a_closed_box_does_not_settle_is_cut() {
             &*format!("time.process_step={step}"),
             "time.end=1e6 s",
             "output.every=1e6 s",
+            "gas.controls.outer_tolerance=1e-8",
         ];
         let cut = run(case, &folder.path().join(name), &step);
         assert!(cut.warnings.is_empty(), "{:?}", cut.warnings);
