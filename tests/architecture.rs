@@ -17,7 +17,7 @@ use imports::{Modules, circles};
 
 /// All arrows there may be: a crate and the crates of this workspace that it may use. Another
 /// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
-const ARROWS: [(&str, &[&str]); 13] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     (
         "calcine",
         &[
@@ -47,6 +47,8 @@ const ARROWS: [(&str, &[&str]); 13] = [
     ("calcine-native", &["calcine-coupler"]),
     ("calcine-numerics", &[]),
     ("calcine-physics", &["calcine-numerics"]),
+    // Python's door to `calcine::simulation`.
+    ("calcine-python", &["calcine"]),
     ("calcine-tuning", &["calcine-numerics", "calcine-physics"]),
     ("calcine-wire", &[]),
     ("xtask", &[]),
@@ -54,13 +56,15 @@ const ARROWS: [(&str, &[&str]); 13] = [
 
 /// Libraries that only some crates may use: the coupler and the solvers know neither
 /// transports, nor TOML, nor HDF5.
-const KEPT_TO: [(&str, &[&str]); 6] = [
+const KEPT_TO: [(&str, &[&str]); 8] = [
     ("hdf5-metno", &["calcine"]),
     ("toml", &["calcine"]),
     ("toml_edit", &["calcine"]),
     ("clap", &["calcine"]),
     ("iceoryx2", &["calcine-wire"]),
     ("mpi", &["calcine-mpi"]),
+    ("numpy", &["calcine-python"]),
+    ("pyo3", &["calcine-python"]),
 ];
 
 /// The circles of imports that stay, by their files, each with the reason.

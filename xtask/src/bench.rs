@@ -52,6 +52,7 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> TaskResult<()> {
     } else {
         Needs {
             tests: false,
+            python: false,
             ..Needs::ALL
         }
     };

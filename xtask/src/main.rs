@@ -7,6 +7,7 @@ mod gas_error;
 mod headers;
 mod json;
 mod packages;
+mod python;
 mod runs;
 mod sources;
 mod steps;
@@ -35,6 +36,7 @@ usage: cargo xtask TASK
   install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine, and what solvers in C
                           are compiled against to DIR/include, DIR/lib, DIR/share/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
+  wheel                   build the Python package's wheel into target/wheels
   bench …                 run the benchmarks and print one table; further arguments go to
                           `cargo bench`
         [--native]        without OpenFOAM, LIGGGHTS and MPI
@@ -95,6 +97,7 @@ enum Task {
         native: bool,
         words: Vec<OsString>,
     },
+    Wheel,
     Bench(bench::Choice),
     GasError(gas_error::ErrorChoice),
     /// A test program of its own, with its words.
@@ -122,6 +125,7 @@ fn read(words: &[OsString]) -> Option<Task> {
                 words: rest[usize::from(native)..].to_vec(),
             })
         }
+        "wheel" if rest.is_empty() => Some(Task::Wheel),
         "bench" if rest.first().is_some_and(|word| word == "gas-error") => {
             let words = rest[1..].iter().map(|word| word.to_str());
             gas_error::ErrorChoice::read(words).map(Task::GasError)
@@ -185,6 +189,7 @@ fn set_up(words: &[OsString]) -> Option<Task> {
 fn install(words: &[OsString]) -> Option<Task> {
     let mut needs = Needs {
         tests: false,
+        python: false,
         ..Needs::ALL
     };
     let mut prefix = None;
@@ -209,6 +214,7 @@ fn perform(task: Task) -> TaskResult<()> {
         Task::SetUp { needs, build } => tasks::set_up(&workspace, needs, build),
         Task::Calcine(words) => tasks::run(&workspace, &words),
         Task::Test { native, words } => tasks::test(&workspace, native, &words),
+        Task::Wheel => tasks::wheel(&workspace),
         Task::Bench(choice) => bench::run(&workspace, &choice),
         Task::GasError(choice) => gas_error::run(&workspace, &choice),
         Task::Program { name, needs, words } => tasks::program(&workspace, name, needs, &words),
@@ -291,6 +297,7 @@ mod tests {
     fn an_installation_needs_a_prefix() {
         let needs = Needs {
             tests: false,
+            python: false,
             ..Needs::ALL
         };
         let prefix = PathBuf::from("/opt/calcine");

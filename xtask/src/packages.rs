@@ -18,6 +18,8 @@ pub struct Needs {
     pub mpi: bool,
     /// What tests read results and check cases with, and a compiler for the C ABI.
     pub tests: bool,
+    /// The Python package, and an environment for its tests.
+    pub python: bool,
 }
 
 impl Needs {
@@ -27,6 +29,7 @@ impl Needs {
         liggghts: false,
         mpi: false,
         tests: false,
+        python: false,
     };
     /// Everything.
     pub const ALL: Self = Self {
@@ -34,6 +37,7 @@ impl Needs {
         liggghts: true,
         mpi: true,
         tests: true,
+        python: true,
     };
 
     /// Names of Debian's packages, each once.
@@ -71,6 +75,7 @@ impl Needs {
             self.tests,
             &["g++", "python3-vtk9", "python3-h5py", "python3-jsonschema"],
         );
+        add(self.python, &["python3-venv"]);
         names
     }
 }

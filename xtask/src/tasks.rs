@@ -9,6 +9,7 @@ use std::process::Command;
 use crate::adapters::OpenfoamAdapter;
 use crate::headers;
 use crate::packages::{self, Needs};
+use crate::python::{self, PythonEnvironment};
 use crate::steps::{Stop, TaskResult, loud_step, new_log, quietly, say, step, visibly};
 use crate::workspace::{CargoProfile, Workspace};
 
@@ -16,6 +17,9 @@ use crate::workspace::{CargoProfile, Workspace};
 pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> TaskResult<()> {
     let _lock = workspace.lock()?;
     packages::install(needs, &workspace.logs)?;
+    if needs.python {
+        PythonEnvironment::prepare(workspace)?;
+    }
     if build {
         build_parts(workspace, needs, BuildScope::Runs)?;
     } else if needs.openfoam {
@@ -56,7 +60,24 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> TaskResu
     if !native && !chooses_packages(words) {
         command.arg("--workspace");
     }
-    loud_step("all tests", || visibly(command.args(words)))
+    let tested = loud_step("all tests", || visibly(command.args(words)));
+    // Words choose among the tests in Rust.
+    if native || !words.is_empty() {
+        return tested;
+    }
+    let in_python = python::test(workspace);
+    tested.and(in_python)
+}
+
+/// Sets up and builds the wheel of the Python package.
+pub fn wheel(workspace: &Workspace) -> TaskResult<()> {
+    let _lock = workspace.lock()?;
+    let needs = Needs {
+        python: true,
+        ..Needs::NATIVE
+    };
+    packages::install(needs, &workspace.logs)?;
+    python::wheel(workspace)
 }
 
 /// Runs one of the test programs of the package `calcine` that have words of their own.

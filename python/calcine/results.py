@@ -1,0 +1,175 @@
+"""Results folders as xarray and pandas."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ._calcine import CaseError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Results:
+    """The results folder of a run, of a finished one or one that goes on.
+
+    Nothing is kept open: each call reads what is there now.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / "summary.json").is_file():
+            raise CaseError(
+                f"{self.folder} is not the results folder of a run: it has no summary.json"
+            )
+
+    def __repr__(self) -> str:
+        return f"Results({str(self.folder)!r})"
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """``summary.json``: what was run and what came out."""
+        return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+
+    def quantity(self, name: str) -> float:
+        """The value of a quantity of the case at the end, in the unit of ``summary['quantities']``."""
+        return self.summary["quantities"][name]["value"]
+
+    def series(self) -> pd.DataFrame:
+        """``series.csv``, a row each ``output.series_every``; the index is the process time in s.
+
+        Columns have the names of the file without units, which are in ``attrs["units"]``.
+        """
+        text = (self.folder / "series.csv").read_text(encoding="utf-8")
+        # A run that goes on, or was killed, may have written part of a line.
+        head, *rows = csv.reader(text[: text.rfind("\n") + 1].splitlines())
+        heads = [one.removesuffix("]").rsplit(" [", 1) for one in head]
+        values = [[float(value) for value in row] for row in rows]
+        table = pd.DataFrame(values, columns=[name for name, _ in heads], dtype=float)
+        table = table.set_index("process_time")
+        table.attrs["units"] = dict(heads)
+        return table
+
+    def series_xarray(self) -> xr.Dataset:
+        """The same as xarray, with the dimension ``process_time`` (s) and the unit of each variable in its attributes."""
+        table = self.series()
+        series = table.to_xarray()
+        for name, unit in table.attrs["units"].items():
+            series[name].attrs["units"] = unit
+        return series
+
+    def fields(self) -> xr.Dataset:
+        """Gas fields of all snapshots over ``process_time`` (s) and ``cell``, with the centres (m) and volumes (m³) of cells."""
+        with self._store() as store:
+            snapshots = [store["snapshots"][key] for key in sorted(store["snapshots"])]
+            times = [float(one.attrs["process_time"]) for one in snapshots]
+            mesh = store["mesh"]
+            centre = mesh["cell_centre"][()]
+            fields = xr.Dataset(
+                coords={
+                    "process_time": ("process_time", times, {"units": "s"}),
+                    "component": ["x", "y", "z"],
+                    **{
+                        axis: ("cell", centre[:, at], {"units": "m"})
+                        for at, axis in enumerate("xyz")
+                    },
+                    "cell_volume": ("cell", mesh["cell_volume"][()], {"units": "m^3"}),
+                }
+            )
+            for name, first in snapshots[0]["gas"].items() if snapshots else ():
+                values = np.stack([one["gas"][name][()] for one in snapshots])
+                dims = ("process_time", "cell", "component")[: values.ndim]
+                fields[name] = (dims, values, _described(first))
+        return fields
+
+    def particles(self, snapshot: int = -1) -> pd.DataFrame:
+        """The particles of a snapshot (the last unless told); the index is the id.
+
+        Vectors are columns such as ``position.x``. ``attrs`` has ``units`` and ``process_time`` (s).
+        """
+        with self._store() as store:
+            group = store["snapshots"][sorted(store["snapshots"])[snapshot]]
+            columns, units = {}, {}
+            for name, field in group["particles"].items():
+                values, unit = field[()], _described(field)["units"]
+                if values.ndim == 1:
+                    parts = {name: values}
+                else:
+                    # Vectors by components, values inside particles by number.
+                    marks = "xyz" if _is_vector(name, values) else range(values.shape[1])
+                    parts = {f"{name}.{mark}": values[:, at] for at, mark in enumerate(marks)}
+                columns |= parts
+                units |= dict.fromkeys(parts, unit)
+            table = pd.DataFrame(columns).set_index("id")
+            table.attrs["units"] = units
+            table.attrs["process_time"] = float(group.attrs["process_time"])
+        return table
+
+    def plot_series(self, *names: str, axes: Axes | None = None) -> Axes:
+        """Draws columns of the series over process time with matplotlib."""
+        import matplotlib.pyplot as plt
+
+        table = self.series()
+        axes = axes or plt.subplots(layout="constrained")[1]
+        for name in names:
+            axes.plot(table.index, table[name], label=name)
+        units = dict.fromkeys(table.attrs["units"][name] for name in names)
+        axes.set_xlabel("process time [s]")
+        axes.set_ylabel(", ".join(f"[{unit}]" for unit in units))
+        axes.legend()
+        return axes
+
+    def plot_profile(
+        self, name: str, *, along: str = "z", snapshot: int = -1, axes: Axes | None = None
+    ) -> Axes:
+        """Draws a scalar gas field of a snapshot over a coordinate of the cells (``x``, ``y`` or ``z``) with matplotlib."""
+        import matplotlib.pyplot as plt
+
+        field = self.fields()[name].isel(process_time=snapshot)
+        axes = axes or plt.subplots(layout="constrained")[1]
+        place = field[along].values
+        order = np.argsort(place, kind="stable")
+        axes.plot(place[order], field.values[order], ".-", label=f"{float(field.process_time):g} s")
+        axes.set_xlabel(f"{along} [m]")
+        axes.set_ylabel(f"{name} [{field.attrs['units']}]")
+        axes.legend()
+        return axes
+
+    def pyvista(self, snapshot: int = -1) -> tuple[Any, Any]:
+        """Gas and particles of a snapshot as PyVista meshes; needs the package ``pyvista``."""
+        import pyvista
+
+        def read(name: str) -> Any:
+            reader = pyvista.get_reader(str(self.folder / name))
+            reader.set_active_time_value(reader.time_values[snapshot])
+            return reader.read()[0]
+
+        return read("gas.pvd"), read("particles.pvd")
+
+    def _store(self) -> h5py.File:
+        path = self.folder / "results.h5"
+        if not path.is_file():
+            raise CaseError(f"{path} is not there: the run was made without HDF5")
+        # A run that goes on is not disturbed.
+        return h5py.File(path, "r", locking=False)
+
+
+def _described(field: h5py.Dataset) -> dict[str, str]:
+    def text(name: str) -> str:
+        value = field.attrs[name]
+        return value.decode() if isinstance(value, bytes) else str(value)
+
+    return {"units": text("unit"), "long_name": text("description")}
+
+
+def _is_vector(name: str, values: np.ndarray) -> bool:
+    return values.shape[1] == 3 and name in {"position", "velocity", "force"}
