@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from typing_extensions import Self
 
 Ending = Literal["finished", "checkpointed"]
 
@@ -40,7 +39,7 @@ class Simulation:
     def checkpoint(self) -> None: ...
     def stop(self) -> Ending: ...
     def close(self) -> None: ...
-    def __enter__(self) -> Self: ...
+    def __enter__(self) -> Simulation: ...
     def __exit__(
         self,
         kind: type[BaseException] | None,
