@@ -48,7 +48,7 @@ const FOLLOWED: f64 = 0.75;
 /// A mismatch of continuity may move pressure gradients by so many tolerances of their own.
 const PRESSED: f64 = 100.0;
 /// Gas that nothing moves: this share of what cells hold counts among the terms of continuity at least.
-const STILL: f64 = 1e-4;
+const STILL: f64 = 1e-5;
 /// A mismatch of so many units of round-off of a cell's terms is none.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Iterations of a solve at most.
