@@ -238,7 +238,6 @@ fn windows_converge_where_a_limiter_serves_several_species() {
         velocity: vec![setup.velocity; mesh.cells()],
         pressure: vec![101_325.0; mesh.cells()],
         composition: composition.collect(),
-        ..GasStart::default()
     });
     for _ in 0..10 {
         let convergence = driver.window(5e-3, 1.0);
