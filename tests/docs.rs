@@ -17,6 +17,8 @@ const ONLY_PARSED: &[(&str, &str)] = &[
         "cargo xtask",
         "installs packages and builds; `cargo xtask test` itself runs this",
     ),
+    ("python3 -m venv", "installs packages"),
+    ("bin/pip install", "installs packages and compiles"),
     (
         "cargo build",
         "compiles; run by the tests of the solvers in C",

@@ -3,6 +3,7 @@
 
 mod arrays;
 mod error;
+mod held;
 mod simulation;
 mod views;
 

@@ -1,7 +1,7 @@
 //! The class `Simulation`.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::Arc;
 
 use calcine::assembly::{GasBackend, ParticleBackend};
 use calcine::simulation::{
@@ -14,6 +14,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays;
 use crate::error::exception;
+use crate::held::HeldSimulation;
 use crate::views::{PyGas, PyMesh, PyParticles};
 
 /// A run of a case in the hands of a program, made by `Case.start()`.
@@ -21,7 +22,7 @@ use crate::views::{PyGas, PyMesh, PyParticles};
 /// Units are SI, times are process time in s. Fields are those of the last committed window. While a window is
 /// computed other threads of Python go on. As a context manager it ends with a checkpoint.
 #[pyclass(name = "Simulation", module = "calcine", frozen)]
-pub struct PySimulation(Mutex<Option<Simulation>>);
+pub struct PySimulation(Arc<HeldSimulation>);
 
 /// What is given for `gas` and `particles`.
 fn backends(builder: SimulationBuilder, gas: &str, particles: &str) -> PyResult<SimulationBuilder> {
@@ -88,7 +89,7 @@ pub fn start(
     }
     let begun = py.detach(|| builder.start());
     let simulation = begun.map_err(|error| exception(py, &error))?;
-    Ok(PySimulation(Mutex::new(Some(simulation))))
+    Ok(PySimulation(Arc::new(HeldSimulation::new(simulation))))
 }
 
 fn word(ending: &Ending) -> &'static str {
@@ -129,31 +130,13 @@ fn quantities(values: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<BoundaryQuanti
 }
 
 impl PySimulation {
-    /// Reads the simulation; waits where another thread is in the middle of a window.
-    pub fn with<T: Send>(
+    /// Reads or changes the simulation.
+    fn with<T: Send>(
         &self,
         py: Python<'_>,
         act: impl FnOnce(&mut Simulation) -> Result<T, SimulationError> + Send,
     ) -> PyResult<T> {
-        let done = py.detach(|| {
-            let mut guard = self.guard();
-            guard.as_mut().map(act)
-        });
-        match done {
-            Some(done) => done.map_err(|error| exception(py, &error)),
-            None => Err(PyValueError::new_err(
-                "the simulation is closed: start the case again, with `resume=True` to go on from its checkpoint",
-            )),
-        }
-    }
-
-    /// After a panic it is gone: nobody knows in what state it is.
-    fn guard(&self) -> MutexGuard<'_, Option<Simulation>> {
-        self.0.lock().unwrap_or_else(|poisoned| {
-            let mut guard = poisoned.into_inner();
-            *guard = None;
-            guard
-        })
+        self.0.with(py, act)
     }
 
     fn read<T: Send>(
@@ -246,7 +229,7 @@ impl PySimulation {
 
     /// Lets go of solvers, memory and results folder, without a checkpoint.
     fn close(&self, py: Python<'_>) {
-        py.detach(|| drop(self.guard().take()));
+        self.0.close(py);
     }
 
     fn __enter__(this: Py<Self>) -> Py<Self> {
@@ -261,7 +244,7 @@ impl PySimulation {
         _raised: &Bound<'_, PyAny>,
         _trace: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let open = py.detach(|| self.guard().is_some());
+        let open = self.0.is_open(py);
         let stopped = match open {
             true => self.with(py, Simulation::stop).map(drop),
             false => Ok(()),
@@ -363,20 +346,20 @@ impl PySimulation {
 
     /// Fields of the gas.
     #[getter]
-    fn gas(this: Py<Self>) -> PyGas {
-        PyGas(this)
+    fn gas(&self) -> PyGas {
+        PyGas(self.0.clone())
     }
 
     /// The particles, in ascending id.
     #[getter]
-    fn particles(this: Py<Self>) -> PyParticles {
-        PyParticles(this)
+    fn particles(&self) -> PyParticles {
+        PyParticles(self.0.clone())
     }
 
     /// The gas mesh.
     #[getter]
-    fn mesh(this: Py<Self>) -> PyMesh {
-        PyMesh(this)
+    fn mesh(&self) -> PyMesh {
+        PyMesh(self.0.clone())
     }
 
     /// Void fraction of each cell, mapped and smoothed.

@@ -1,11 +1,13 @@
 //! What can be looked at of a simulation: the gas, the particles, the mesh.
 
+use std::sync::Arc;
+
 use calcine::simulation::Simulation;
 use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays;
-use crate::simulation::PySimulation;
+use crate::held::HeldSimulation;
 
 type Scalars<'py, T> = PyResult<Bound<'py, PyArray1<T>>>;
 type Vectors<'py> = PyResult<Bound<'py, PyArray2<f64>>>;
@@ -13,30 +15,26 @@ type Vectors<'py> = PyResult<Bound<'py, PyArray2<f64>>>;
 /// A field of one value each, copied while the run stands still.
 fn scalars<'py, T: Element + Copy>(
     py: Python<'py>,
-    of: &Py<PySimulation>,
+    of: &Arc<HeldSimulation>,
     field: impl FnOnce(&Simulation) -> &[T] + Send,
 ) -> Scalars<'py, T> {
-    let copy = of
-        .get()
-        .with(py, |simulation| Ok(field(simulation).to_vec()))?;
+    let copy = of.with(py, |simulation| Ok(field(simulation).to_vec()))?;
     arrays::scalars(py, &copy)
 }
 
 /// A field of three components each.
 fn vectors<'py, V: std::ops::Index<usize, Output = f64> + Copy + Send>(
     py: Python<'py>,
-    of: &Py<PySimulation>,
+    of: &Arc<HeldSimulation>,
     field: impl FnOnce(&Simulation) -> &[V] + Send,
 ) -> Vectors<'py> {
-    let copy = of
-        .get()
-        .with(py, |simulation| Ok(field(simulation).to_vec()))?;
+    let copy = of.with(py, |simulation| Ok(field(simulation).to_vec()))?;
     arrays::vectors(py, &copy)
 }
 
 /// Fields of the gas after the last committed window, one row a cell: read-only copies.
 #[pyclass(name = "Gas", module = "calcine", frozen)]
-pub struct PyGas(pub Py<PySimulation>);
+pub struct PyGas(pub Arc<HeldSimulation>);
 
 #[pymethods]
 impl PyGas {
@@ -69,13 +67,13 @@ impl PyGas {
     fn species(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let names =
             |simulation: &mut Simulation| Ok(simulation.case().gas.properties.species().to_vec());
-        self.0.get().with(py, names)
+        self.0.with(py, names)
     }
 
     /// Mass fractions, one column a species; without columns for a single gas.
     #[getter]
     fn mass_fractions<'py>(&self, py: Python<'py>) -> Vectors<'py> {
-        let (table, cells) = self.0.get().with(py, |simulation| {
+        let (table, cells) = self.0.with(py, |simulation| {
             let gas = simulation.gas();
             Ok((gas.composition.to_vec(), gas.temperature.len()))
         })?;
@@ -86,13 +84,12 @@ impl PyGas {
 
 /// The particles after the last committed window, in ascending id: read-only copies.
 #[pyclass(name = "Particles", module = "calcine", frozen)]
-pub struct PyParticles(pub Py<PySimulation>);
+pub struct PyParticles(pub Arc<HeldSimulation>);
 
 #[pymethods]
 impl PyParticles {
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
         self.0
-            .get()
             .with(py, |simulation| Ok(simulation.particles().len()))
     }
 
@@ -147,14 +144,12 @@ impl PyParticles {
 
 /// The gas mesh: read-only copies, one row a cell.
 #[pyclass(name = "Mesh", module = "calcine", frozen)]
-pub struct PyMesh(pub Py<PySimulation>);
+pub struct PyMesh(pub Arc<HeldSimulation>);
 
 #[pymethods]
 impl PyMesh {
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        self.0
-            .get()
-            .with(py, |simulation| Ok(simulation.mesh().cells()))
+        self.0.with(py, |simulation| Ok(simulation.mesh().cells()))
     }
 
     /// Centres of the cells in m.
@@ -172,7 +167,7 @@ impl PyMesh {
     /// Names of the patches.
     #[getter]
     fn patches(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        self.0.get().with(py, |simulation| {
+        self.0.with(py, |simulation| {
             let patches = simulation.mesh().patches().iter();
             Ok(patches.map(|patch| patch.name.clone()).collect())
         })
