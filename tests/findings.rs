@@ -567,3 +567,25 @@ fn a_film_without_a_value_ends_the_run_and_its_failure_is_in_the_summary() {
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("The run ended with exit code 3"));
 }
+
+/// Gas that goes round at one temperature, past a speck: what moves of its heat is round-off of 1e-16 J, of which the balance may leave any share.
+#[test]
+fn round_off_of_heat_that_does_not_move_is_no_open_balance() {
+    let directory = TempDir::new().unwrap();
+    let out = directory.path().join("out");
+    let set = [
+        "time.end=0.1 s",
+        "time.motion_window=5 ms",
+        "output.every=0.1 s",
+        "particles[0].diameter=1 um",
+    ];
+    program::run(
+        &good("periodic-channel"),
+        &out,
+        &["--gas", "openfoam"],
+        &set,
+    );
+    let summary = Summary::read(&out).unwrap();
+    assert!(summary.ledger.lines["energy"].relative_error > 0.01);
+    assert!(!summary.warnings.contains_key("open_balance"));
+}

@@ -6,8 +6,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use calcine::results::Summary;
-
 use crate::support::blocks::{Block, even};
 
 /// A case of an empty duct in a mesh of a file whose points are moved.
@@ -85,25 +83,6 @@ fn a_pressure_that_leaves_that_of_the_start_is_warned_of_over_time_too() {
         said.contains("`top` has a pressure of 50662.5 Pa"),
         "{said}"
     );
-}
-
-#[test]
-fn round_off_of_gas_whose_heat_does_not_move_is_no_open_balance() {
-    let folder = tempfile::tempdir().unwrap();
-    duct(folder.path(), &upright);
-    let still = [
-        "gas.patch.bottom={ symmetry = {} }",
-        "gas.patch.top={ symmetry = {} }",
-        "time.end=50 ms",
-    ];
-    let (code, said) = calcine(
-        folder.path(),
-        &["run", "case.toml", "--out", "out", "--quiet"],
-        &still,
-    );
-    assert_eq!(code, Some(0), "{said}");
-    let summary = Summary::read(&folder.path().join("out")).unwrap();
-    assert!(!summary.warnings.contains_key("open_balance"), "{said}");
 }
 
 #[test]

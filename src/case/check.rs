@@ -6,7 +6,6 @@ use calcine_adapters::openfoam::{chemistry, template};
 use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::cylinder::outline;
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::film::{FilmDiffusivity, ReferenceDiffusivity};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
@@ -110,12 +109,9 @@ pub fn check_report(
         );
     }
     if let MeshSpec::PolyMesh(_) = &case.mesh {
-        let points = mesh.topology().points.iter();
-        let ends = points.fold(
-            [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat),
-            |[low, high], at| [low.inf(at), high.sup(at)],
-        );
-        let [low, high] = ends.map(|at| [at.x, at.y, at.z].map(short).join(", "));
+        let [low, high] = mesh
+            .bounds()
+            .map(|at| [at.x, at.y, at.z].map(short).join(", "));
         let _ = writeln!(text, "                 from ({low}) to ({high}) m");
     }
     let directions = boundaries::lines(case, mesh);

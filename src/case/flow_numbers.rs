@@ -41,10 +41,8 @@ pub(super) struct FlowNumbers {
     residence: f64,
     /// Windows over that time, on the process clock.
     windows: f64,
-    /// Largest Reynolds number of a cell at an inlet's speed.
-    cell_reynolds: f64,
-    /// By how many degrees cells lean at most.
-    leaning: f64,
+    /// Reynolds number of a cell at the speed of the fastest inlet, and by how many degrees cells lean at most; of central convection.
+    undamped: Option<[f64; 2]>,
     bed: Option<BedNumbers>,
 }
 
@@ -94,18 +92,21 @@ impl FlowNumbers {
         let window = case.time.motion_window.seconds();
         let size = (room / mesh.cells() as f64).cbrt();
         let at_inlets = inlets.iter().map(|one| one.crossed * window);
-        let density = gas
-            .properties
-            .density(gas.pressure, temperature, &gas.composition);
+        let central = matches!(gas.controls.convection, Convection::Central(share) if share > 0.5);
+        let properties = &gas.properties;
+        let undamped = central.then(|| {
+            let density = properties.density(gas.pressure, temperature, &gas.composition);
+            let viscosity = properties.viscosity(temperature, &gas.composition);
+            let leaning = mesh.quality().map_or(0.0, |quality| quality.angle.value);
+            [speed * size * density / viscosity, leaning]
+        });
         Some(Self {
             speed,
             mach: sound.map(|sound| fastest / sound),
             courant: at_inlets.fold(in_bed * window / size, f64::max),
             residence,
             windows: window * case.time.acceleration.largest() / residence,
-            cell_reynolds: speed * size * density
-                / gas.properties.viscosity(temperature, &gas.composition),
-            leaning: mesh.quality().map_or(0.0, |quality| quality.angle.value),
+            undamped,
             bed,
         })
     }
@@ -158,17 +159,16 @@ impl FlowNumbers {
                 short3(self.speed)
             ));
         }
-        if let Convection::Central(share) = case.gas.controls.convection
-            && share > 0.5
-            && self.leaning > LEANS
-            && self.cell_reynolds > WAVY
+        if let Some([reynolds, leaning]) = self.undamped
+            && leaning > LEANS
+            && reynolds > WAVY
         {
             all.push(format!(
                 "central convection at a cell Reynolds number of about {} on cells that lean by up to {:.0} degrees: it does not damp what \
                  such cells excite, and velocities may grow beyond any bound; write gas.controls.convection = \"van-leer\", or a \
                  finer mesh",
-                short3(self.cell_reynolds),
-                self.leaning
+                short3(reynolds),
+                leaning
             ));
         }
         let Some(bed) = &self.bed else {

@@ -28,12 +28,9 @@ use crate::numerics::parallel::largest;
 const SCALARS: f64 = 1e-2;
 
 /// From this outer iteration on, what limiters leave to the last iterate follows it half way only: their
-/// switching may otherwise lead from one iterate to another and back for ever.
+/// switching may otherwise lead from one iterate to another and back for ever. The limiter of species follows by half as much in each
+/// iteration as in the one before, so that it comes to rest: it switches between them, and with it the density, for as long as it follows.
 const FOLLOWED: u32 = 8;
-
-/// From this outer iteration on, limiters of species follow by half as much in each iteration as in the one before, so that they come to rest:
-/// one for all species switches between them, and with it the density, for as long as it follows.
-const SETTLED: i32 = 8;
 
 /// Sweeps of reacting species and enthalpy in an outer iteration at most.
 const SWEEPS: u32 = 5;
@@ -74,7 +71,7 @@ pub struct Equations {
     pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
     share: f64,
-    /// The same of the limiters of species.
+    /// The same of the limiter of species.
     limited: f64,
     /// Residual of momentum and continuity.
     flow: f64,
@@ -143,8 +140,8 @@ impl Equations {
             convergence.outer_iterations = outer;
             if outer >= FOLLOWED {
                 self.share = 0.5;
+                self.limited *= 0.5;
             }
-            self.limited = 0.5f64.powi((outer as i32 - SETTLED).max(0));
             // Early iterates may be no state of a gas (after a start from rest a cell may give more than it
             // holds), as long as they are numbers; the last one must be one.
             guard::nonsense(now, &frame.grid.centre)?;

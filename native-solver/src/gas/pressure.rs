@@ -33,7 +33,7 @@ use super::tolerance::{ContinuityResidual, LinearTolerances};
 use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
 use crate::numerics::grid::{Face, MeshGraph};
-use crate::numerics::krylov::{Krylov, SolveTolerance};
+use crate::numerics::krylov::{Krylov, ROUND_OFF, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, outflow};
 use crate::numerics::parallel::{fill, sums};
@@ -49,8 +49,6 @@ const FOLLOWED: f64 = 0.75;
 const PRESSED: f64 = 100.0;
 /// Gas that nothing moves: this share of what cells hold counts among the terms of continuity at least.
 const STILL: f64 = 1e-5;
-/// A mismatch of so many units of round-off of a cell's terms is none.
-const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Iterations of a solve at most.
 const ITERATIONS: u32 = 2000;
 /// Up to this many cells the incomplete factorisation is used. There it was measured level with the multigrid, which takes half of its time
@@ -92,8 +90,8 @@ impl Approximation {
 pub struct Pressure {
     matrix: Matrix,
     preconditioner: Approximation,
-    /// h = V^⅓ of each cell in m.
-    size: Vec<f64>,
+    /// h² = V^⅔ of each cell in m².
+    section: Vec<f64>,
     /// ρ ε χ V/a of each cell in s.
     mobility: Vec<f64>,
     /// b along the normal of each face, of its owner and its neighbour, in s.
@@ -138,7 +136,9 @@ impl Pressure {
         let warp = warp(matrix.grid());
         Self {
             preconditioner: Approximation::new(&matrix),
-            size: matrix.grid().volume.iter().map(|v| v.cbrt()).collect(),
+            section: (matrix.grid().volume.iter())
+                .map(|volume| volume.cbrt().powi(2))
+                .collect(),
             matrix,
             mobility: vec![0.0; cells],
             along_normal: vec![[0.0; 2]; faces],
@@ -366,9 +366,10 @@ impl Pressure {
             let error = (target(frame, material, now, cell) - net).abs();
             let round_off = ROUND_OFF * (held + through);
             let error = if error <= round_off { 0.0 } else { error };
-            let pushed = grid.volume[cell] * now.pressure_gradient[cell].norm();
-            [error, through, held, pushed / self.size[cell]]
+            let pushed = self.section[cell] * now.pressure_gradient[cell].norm();
+            [error, through, held, pushed]
         });
+        // ρ u² V Δt/h², of all cells by their means.
         let spans = frame.motion_span / frame.storage_span;
         let moved = pressed * frame.motion_span + spans * through * through / held;
         let terms = (through + held).min(PRESSED * moved + STILL * held);

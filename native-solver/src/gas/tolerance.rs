@@ -39,7 +39,8 @@ pub enum Assembled {
 pub struct ContinuityResidual {
     /// Σ over cells of its mismatch, and what openings miss, as a share of `terms`.
     pub share: f64,
-    /// What cells hold over the storage span, and what flows through them, in kg/s.
+    /// What cells hold over the storage span, and what flows through them, in kg/s; in short windows what moves pressures as the flow
+    /// does, if that is less ([`super::pressure`]).
     pub terms: f64,
     /// Mean Courant number on the process clock, AF Co: how often the gas of a cell is renewed in a window.
     pub renewals: f64,
@@ -48,7 +49,7 @@ pub struct ContinuityResidual {
 /// What the linear solves of an outer iteration end at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearTolerances {
-    /// Σ|mismatch of continuity| in kg/s: a share of what cells hold, not of what flows through them, which over a long window
+    /// Σ|mismatch of continuity| in kg/s: a share of what cells hold (in short windows of less), not of what flows through them, which over a long window
     /// is 1 + AF Co times that.
     pub continuity: f64,
     /// Relative to what moves of a scalar. What is left in one cell, flows carry through as many as the window is Courant numbers

@@ -8,7 +8,7 @@ use super::parallel::{dot, magnitude, update};
 use super::preconditioner::Preconditioner;
 
 /// A residual below this many units of round-off of the equation's terms cannot be improved.
-const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+pub const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Restarts from the true residual at most; one is the rule, more only where recurrence and true
 /// residual have drifted apart.
 const RESTARTS: u32 = 4;
