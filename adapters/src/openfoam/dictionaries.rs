@@ -252,15 +252,15 @@ fn beyond(gas: &PatchGas, names: &[String]) -> Vec<(&'static str, String)> {
 pub fn schemes(text: &str, convection: Convection) -> String {
     let [velocity, enthalpy, fractions] = match convection {
         Convection::Upwind => return text.to_owned(),
-        Convection::VanLeer => ["vanLeerV", "vanLeer", "vanLeer"].map(str::to_owned),
+        Convection::VanLeer => ["vanLeerV", "calcineVanLeer", "calcineVanLeer"].map(str::to_owned),
         Convection::Central(share) => {
             let central = format!("fixedBlended {share} calcineLinear upwind");
-            [central.clone(), central, "vanLeer".into()]
+            [central.clone(), central, "calcineVanLeer".into()]
         }
         Convection::LimitedLinear(k) => [
             format!("limitedLinearV {k}"),
-            format!("limitedLinear {k}"),
-            "vanLeer".into(),
+            format!("calcineLimitedLinear {k}"),
+            "calcineVanLeer".into(),
         ],
     };
     [

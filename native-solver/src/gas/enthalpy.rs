@@ -20,7 +20,7 @@ use super::chemistry::ReactionSource;
 use super::inflow;
 use super::state::GasState;
 use super::tolerance::ScalarTolerance;
-use crate::numerics::convection::beyond_upwind;
+use crate::numerics::convection::{Field, beyond_upwind, bounds};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
@@ -54,6 +54,7 @@ pub struct Enthalpy {
     preconditioner: Incomplete,
     /// Gradients of h and T, from the last iterate.
     gradients: [Vec<Vec3>; 2],
+    bounds: Vec<[f64; 2]>,
     /// True where they are of the enthalpy at hand: of a single gas nothing but a solve changes it in an attempt.
     hold: bool,
     faces: Vec<f64>,
@@ -171,6 +172,7 @@ impl Enthalpy {
             given: [vec![0.0; cells], vec![0.0; cells]],
             preconditioner: Incomplete::default(),
             gradients: [vec![Vec3::zeros(); cells], vec![Vec3::zeros(); cells]],
+            bounds: vec![[0.0; 2]; cells],
             hold: false,
             faces: vec![0.0; faces],
             taken: EnthalpyFlows::default(),
@@ -305,12 +307,16 @@ impl Enthalpy {
         }
         let [carried, conducted] = &self.gradients;
         let conduction = &self.conduction;
+        let field = Field {
+            values: &now.enthalpy,
+            gradients: carried,
+            bounds: &self.bounds,
+        };
         let explicit = |index: usize| {
             let mut out = species.get(index).copied().unwrap_or(0.0);
             let flux = now.flux[index];
             if second && index < grid.internal && flux != 0.0 {
-                let scheme = frame.convection;
-                out += flux * beyond_upwind(scheme, grid, index, flux, &now.enthalpy, carried);
+                out += flux * beyond_upwind(frame.convection, grid, index, flux, field);
             }
             if !grid.orthogonal && conduction[index] != 0.0 {
                 out += conduction[index] * displacement(grid, &grid.faces[index], conducted);
@@ -337,6 +343,7 @@ impl Enthalpy {
             };
             let (found, faces) = (&mut self.gradients[0], &mut self.faces);
             gradients(grid, &now.enthalpy, boundary, found, faces);
+            bounds(grid, &now.enthalpy, boundary, &mut self.bounds);
         }
         if !grid.orthogonal {
             let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {

@@ -20,7 +20,7 @@ use super::chemistry::ReactionSource;
 use super::inflow;
 use super::state::GasState;
 use super::tolerance::{Assembled, ScalarTolerance};
-use crate::numerics::convection::{beyond_upwind, limited, limiter};
+use crate::numerics::convection::{Field, beyond_upwind, bounds, limited, limiter};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
@@ -40,6 +40,7 @@ pub struct SpeciesEquations {
     /// Mass fractions of the iterate, species by species: one list of cells each.
     fractions: Vec<Vec<f64>>,
     gradients: Vec<Vec<Vec3>>,
+    bounds: Vec<Vec<[f64; 2]>>,
     limiters: Vec<f64>,
     faces: Vec<f64>,
     /// Flow of each species out of the owner of each face in kg/s, of what is taken explicitly.
@@ -53,6 +54,7 @@ pub struct SpeciesEquations {
     /// compositions mix at one temperature.
     pub carried: Vec<f64>,
     temperature_gradients: Vec<Vec3>,
+    temperature_bounds: Vec<[f64; 2]>,
     /// Flow of each species into the domain in kg/s and the sum of its magnitudes over the faces, as the
     /// last solve took them.
     pub boundary: Vec<[f64; 2]>,
@@ -67,6 +69,7 @@ impl SpeciesEquations {
             diffusion: Vec::new(),
             fractions: Vec::new(),
             gradients: Vec::new(),
+            bounds: Vec::new(),
             limiters: Vec::new(),
             faces: Vec::new(),
             explicit: Vec::new(),
@@ -74,6 +77,7 @@ impl SpeciesEquations {
             reactions: ReactionSource::default(),
             carried: Vec::new(),
             temperature_gradients: Vec::new(),
+            temperature_bounds: Vec::new(),
             boundary: Vec::new(),
         }
     }
@@ -87,6 +91,7 @@ impl SpeciesEquations {
         }
         self.fractions.resize(species, vec![0.0; cells]);
         self.gradients.resize(species, vec![Vec3::zeros(); cells]);
+        self.bounds.resize(species, vec![[0.0; 2]; cells]);
         self.explicit.resize(species, vec![0.0; faces]);
         self.boundary.resize(species, [0.0; 2]);
         self.diffusion.resize(faces, 0.0);
@@ -99,6 +104,7 @@ impl SpeciesEquations {
             fill(fractions, |cell| frame.old.composition[cell * species + k]);
         }
         self.temperature_gradients.resize(cells, Vec3::zeros());
+        self.temperature_bounds.resize(cells, [0.0; 2]);
         for gradients in &mut self.gradients {
             fill(gradients, |_| Vec3::zeros());
         }
@@ -238,9 +244,12 @@ impl SpeciesEquations {
                     |index: usize, inner: f64| inflow::face_fraction(frame, index, k, inner);
                 let found = &mut self.gradients[k];
                 gradients(grid, fractions, boundary, found, &mut self.faces);
+                if second {
+                    bounds(grid, fractions, boundary, &mut self.bounds[k]);
+                }
             }
         }
-        let (fractions, gradients) = (&self.fractions, &self.gradients);
+        let (fractions, gradients, bounds) = (&self.fractions, &self.gradients, &self.bounds);
         let limiting = |index: usize| {
             if !second || index >= grid.internal {
                 return 0.0;
@@ -249,8 +258,12 @@ impl SpeciesEquations {
             let last = fractions.len() - 1;
             let one = |k: usize| {
                 let noise = if k == last { frame.tolerance } else { 0.0 };
-                let fields = (&fractions[k][..], &gradients[k][..]);
-                limiter(grid, index, now.flux[index], fields, noise)
+                let field = Field {
+                    values: &fractions[k],
+                    gradients: &gradients[k],
+                    bounds: &bounds[k],
+                };
+                limiter(grid, index, now.flux[index], field, noise)
             };
             (0..fractions.len()).map(one).fold(2.0, f64::min)
         };
@@ -332,6 +345,7 @@ impl SpeciesEquations {
             };
             let (found, faces) = (&mut self.temperature_gradients, &mut self.faces);
             gradients(grid, &now.temperature, boundary, found, faces);
+            bounds(grid, &now.temperature, boundary, &mut self.temperature_bounds);
         }
         let mut carried = std::mem::take(&mut self.carried);
         fill(&mut carried, |index| {
@@ -382,9 +396,12 @@ impl SpeciesEquations {
             face.neighbour
         };
         let before = now.temperature[up];
-        let gradients = &self.temperature_gradients;
-        let (scheme, values) = (frame.convection, &now.temperature);
-        let temperature = before + beyond_upwind(scheme, grid, index, flux, values, gradients);
+        let field = Field {
+            values: &now.temperature,
+            gradients: &self.temperature_gradients,
+            bounds: &self.temperature_bounds,
+        };
+        let temperature = before + beyond_upwind(frame.convection, grid, index, flux, field);
         let one = |k: usize| {
             let fraction = self.fractions[k][up];
             let more = limited(grid, index, flux, &self.fractions[k], self.limiters[index]);

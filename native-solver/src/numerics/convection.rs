@@ -6,7 +6,8 @@
 //! q_f = q_C + w_D ψ Δ,   ψ Δ = 2 a Δ/(a + Δ) where a and Δ have one sign, else 0,
 //!
 //! w_D the weight of D in linear interpolation: second order where q is smooth and monotone, upwind
-//! at extrema, and nothing to divide by zero. Limited linear interpolation has ψ = max(0, min(2 r/k, 1)): ψ Δ = 2 a/k where that is
+//! at extrema, and nothing to divide by zero. a is q_C less the value that the gradient leads to on the other side of C; on irregular cells
+//! that may lie beyond all values there, and is bounded by those of C and of what is beside it ([`Field::bounds`]). Limited linear interpolation has ψ = max(0, min(2 r/k, 1)): ψ Δ = 2 a/k where that is
 //! the smaller, else Δ; Sweby's bounds of a scheme that makes no new extrema (doi 10.1137/0721062) hold at k = 1. Central differences
 //! carry a share of what linear interpolation to the centre of the face is beyond upwind, so that linear fields are exact on any
 //! mesh where the share is one.
@@ -15,7 +16,8 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
 use nalgebra::Matrix3;
 
-use super::grid::MeshGraph;
+use super::grid::{CellFace, MeshGraph};
+use super::parallel::fill;
 
 /// Cells upstream and downstream of an internal face, and the weight of the latter.
 #[inline]
@@ -36,6 +38,46 @@ fn downstream(grid: &MeshGraph, index: usize, flux: f64) -> Vec3 {
     if flux >= 0.0 { line } else { -line }
 }
 
+/// A scalar in the cells: its values, their gradients, and the least and the largest value of each cell and what is beside it, which
+/// schemes without a limiter do not look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Field<'a> {
+    pub values: &'a [f64],
+    pub gradients: &'a [Vec3],
+    pub bounds: &'a [[f64; 2]],
+}
+
+impl Field<'_> {
+    // Not `clamp`, which panics where a diverging flow is not a number.
+    /// q_C less what the gradient leads to at the mirror image of the cell downstream, as far as that lies within the bounds.
+    #[inline]
+    fn behind(&self, grid: &MeshGraph, index: usize, flux: f64) -> f64 {
+        let (up, down, _) = sides(grid, index, flux);
+        let along = self.gradients[up].dot(&downstream(grid, index, flux));
+        let [least, largest] = self.bounds[up];
+        self.values[up] - (self.values[down] - 2.0 * along).max(least).min(largest)
+    }
+}
+
+/// Finds the least and the largest value of each cell and what is beside it; `boundary(face, value of its cell)` is the value on the
+/// boundary where one is given.
+pub fn bounds(
+    grid: &MeshGraph,
+    values: &[f64],
+    boundary: impl Fn(usize, f64) -> Option<f64> + Sync,
+    bounds: &mut [[f64; 2]],
+) {
+    fill(bounds, |cell| {
+        let own = values[cell];
+        let beside = |link: &CellFace| match link.is_boundary() {
+            true => boundary(link.face as usize, own).unwrap_or(own),
+            false => values[link.other as usize],
+        };
+        let widen = |[least, largest]: [f64; 2], value: f64| [least.min(value), largest.max(value)];
+        grid.links(cell).iter().map(beside).fold([own; 2], widen)
+    });
+}
+
 /// What an internal face's value of a scalar is beyond the upwind one.
 #[inline]
 pub fn beyond_upwind(
@@ -43,9 +85,9 @@ pub fn beyond_upwind(
     grid: &MeshGraph,
     index: usize,
     flux: f64,
-    values: &[f64],
-    gradients: &[Vec3],
+    field: Field<'_>,
 ) -> f64 {
+    let (values, gradients) = (field.values, field.gradients);
     let (up, down, weight) = sides(grid, index, flux);
     if let Convection::Central(share) = scheme {
         let face = &grid.faces[index];
@@ -58,8 +100,7 @@ pub fn beyond_upwind(
         return 0.0;
     }
     let difference = values[down] - values[up];
-    let along = gradients[up].dot(&downstream(grid, index, flux));
-    let other = 2.0 * along - difference;
+    let other = field.behind(grid, index, flux);
     if other * difference <= 0.0 {
         return 0.0;
     }
@@ -80,13 +121,12 @@ pub fn limiter(
     grid: &MeshGraph,
     index: usize,
     flux: f64,
-    (values, gradients): (&[f64], &[Vec3]),
+    field: Field<'_>,
     noise: f64,
 ) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
-    let difference = values[down] - values[up];
-    let along = gradients[up].dot(&downstream(grid, index, flux));
-    let other = 2.0 * along - difference;
+    let difference = field.values[down] - field.values[up];
+    let other = field.behind(grid, index, flux);
     let limiting = if other * difference > 0.0 {
         2.0 * other / (other + difference)
     } else if difference == 0.0 && other == 0.0 {
