@@ -35,6 +35,7 @@ mod installed_interface;
 mod isomers;
 mod laws;
 mod liggghts_script;
+mod limiters;
 mod lost_particles;
 mod measures;
 mod meshes_told;

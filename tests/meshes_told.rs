@@ -62,6 +62,41 @@ fn a_mesh_that_is_folded_is_refused_with_the_place() {
 }
 
 #[test]
+fn check_tells_of_pieces_of_a_mesh_that_no_face_joins() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    // Without the third of six layers.
+    let layer = |at: [f64; 3]| at[2] > 0.34 && at[2] < 0.49;
+    let block = Block {
+        levels: [even(4), even(2), even(6)],
+        patches: ["side", "side", "side", "side", "bottom", "top"],
+        hole: Some(("side", &layer)),
+        shape: &upright,
+    };
+    block.write(folder.path());
+    let (_, said) = calcine(folder.path(), &["check", "case.toml"], &[]);
+    assert!(
+        said.contains("2 pieces that no face joins") && said.contains("16 cells about (0.0075"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_thin_layer_between_thick_ones_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    // The cells above the middle are thinner by a factor of 200.
+    duct(folder.path(), &|at| {
+        let thin = (at[2] - 0.5).clamp(0.0, 1.0 / 6.0);
+        upright([at[0], at[1], at[2] - thin * (1.0 - 1.0 / 200.0)])
+    });
+    let (_, said) = calcine(folder.path(), &["check", "case.toml"], &[]);
+    assert!(
+        said.contains("a cell 200 times thinner than its neighbour"),
+        "{said}"
+    );
+}
+
+#[test]
 fn check_prints_where_the_mesh_of_a_file_begins_and_ends() {
     let folder = tempfile::tempdir().unwrap();
     duct(folder.path(), &upright);

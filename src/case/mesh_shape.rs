@@ -1,7 +1,7 @@
 //! What `calcine check` says of the cells of a mesh.
 
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::mesh::quality::InCell;
+use calcine_coupler::mesh::quality::{InCell, MeshPiece};
 use calcine_coupler::physics::Vec3;
 
 use super::model::{Case, MeshSpec};
@@ -10,6 +10,10 @@ use super::model::{Case, MeshSpec};
 const MOST_ANGLE: f64 = 70.0;
 /// Largest skewness of faces at which gas was tried.
 const MOST_SKEWNESS: f64 = 1.0;
+/// Largest ratio of the thicknesses of neighbours at which gas was tried.
+const MOST_RATIO: f64 = 100.0;
+/// Pieces of a mesh that are listed.
+const LISTED: usize = 4;
 /// Angle in degrees and skewness that nobody needs to be told of.
 const SLIGHT: [f64; 2] = [0.1, 1e-3];
 
@@ -47,7 +51,7 @@ pub(super) fn report(mesh: &Mesh) -> (Vec<String>, Vec<String>) {
         true => quality.boundary_skewness,
         false => skewness,
     };
-    let (mut lines, mut warnings) = (Vec::new(), Vec::new());
+    let (mut lines, mut warnings) = (pieces(mesh), Vec::new());
     if angle.value > SLIGHT[0] {
         lines.push(format!(
             "non-orthogonality up to {:.1} degrees, average {:.1}; largest {}",
@@ -82,7 +86,41 @@ pub(super) fn report(mesh: &Mesh) -> (Vec<String>, Vec<String>) {
             place(&skewness)
         ));
     }
+    let ratio = quality.thickness_ratio;
+    if ratio.value > MOST_RATIO {
+        warnings.push(format!(
+            "a cell {:.0} times thinner than its neighbour {}, above the {MOST_RATIO} at which the gases were tried: pressure converges \
+             slowly or not at all; let the cells grow by steps, or shorten the windows",
+            ratio.value,
+            place(&ratio)
+        ));
+    }
     (lines, warnings)
+}
+
+/// A line on a mesh of several pieces.
+fn pieces(mesh: &Mesh) -> Vec<String> {
+    let pieces = mesh.pieces();
+    if pieces.len() < 2 {
+        return Vec::new();
+    }
+    let told = |piece: &MeshPiece| {
+        let at = piece.centre;
+        let (cells, place) = (
+            piece.cells,
+            format!("({:.4}, {:.4}, {:.4}) m", at.x, at.y, at.z),
+        );
+        format!("{cells} cells about {place}")
+    };
+    let mut list: Vec<String> = pieces.iter().take(LISTED).map(told).collect();
+    if pieces.len() > LISTED {
+        list.push(format!("{} more", pieces.len() - LISTED));
+    }
+    vec![format!(
+        "{} pieces that no face joins, between which no gas passes: {}",
+        pieces.len(),
+        list.join(", ")
+    )]
 }
 
 fn place(one: &InCell) -> String {

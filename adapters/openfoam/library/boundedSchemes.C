@@ -67,7 +67,11 @@ class calcineBounded
         forAll(mesh.boundary(), patchi)
         {
             const fvPatchScalarField& patch = field.boundaryField()[patchi];
-            const scalarField beside(patch.coupled() ? patch.patchNeighbourField() : tmp<scalarField>(patch));
+            // A cell beside would lie as far behind a face of the boundary as this one does before it.
+            const scalarField beside
+            (
+                patch.coupled() ? patch.patchNeighbourField() : 2*patch - patch.patchInternalField()
+            );
             forAll(beside, i)
             {
                 widen(patch.patch().faceCells()[i], beside[i]);

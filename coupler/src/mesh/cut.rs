@@ -50,10 +50,10 @@ pub fn cut(mesh: &Mesh, cuts: &[Cut]) -> Result<Mesh, MeshError> {
     };
     let bodies: Vec<Option<usize>> = (0..mesh.cells()).map(body).collect();
     let made = Mesh::new(without(mesh, &bodies, &names)?)?;
-    let Some(cell) = first_apart(&made) else {
+    let Some(apart) = made.pieces().get(1).copied() else {
         return Ok(made);
     };
-    let at = made.cell_centre()[cell];
+    let at = apart.centre;
     wrong(format!(
         "the cuts part the gas: that in the cell at ({:.4}, {:.4}, {:.4}) m has no way to the first cell; leave a way between \
          them, or cut this part out too",
@@ -179,24 +179,6 @@ impl<'a> Builder<'a> {
         }
         self.topology
     }
-}
-
-/// The first cell that no way through faces leads to from cell 0.
-fn first_apart(mesh: &Mesh) -> Option<usize> {
-    let mut reached = vec![false; mesh.cells()];
-    let mut next = vec![0];
-    reached[0] = true;
-    while let Some(cell) = next.pop() {
-        for &face in mesh.faces_of(cell) {
-            if let Some(other) = mesh.across(cell, face as usize)
-                && !reached[other]
-            {
-                reached[other] = true;
-                next.push(other);
-            }
-        }
-    }
-    reached.iter().position(|reached| !reached)
 }
 
 #[cfg(test)]

@@ -28,6 +28,17 @@ pub struct MeshQuality {
     pub skewness: InCell,
     /// The same of the faces of the boundary, with the line from the cell's centre normal to the face (at least two fifths of it).
     pub boundary_skewness: InCell,
+    /// Largest ratio of the distances from the centres of two neighbours to the plane of their face; in the thinner of them.
+    pub thickness_ratio: InCell,
+}
+
+/// Cells that faces join, and which no face joins to others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshPiece {
+    /// Number of its cells.
+    pub cells: usize,
+    /// Centre of the first of them in m.
+    pub centre: Vec3,
 }
 
 impl Mesh {
@@ -45,7 +56,36 @@ impl Mesh {
                 internal,
                 (internal..self.faces()).map(|face| self.skewness(face)),
             )?,
+            thickness_ratio: self.thickness_ratio()?,
         })
+    }
+
+    /// The pieces of a mesh in the order of their first cells; periodic planes join as faces do.
+    pub fn pieces(&self) -> Vec<MeshPiece> {
+        let mut met = vec![false; self.cells];
+        let (mut pieces, mut open) = (Vec::new(), Vec::new());
+        for first in 0..self.cells {
+            if met[first] {
+                continue;
+            }
+            met[first] = true;
+            open.push(first);
+            let mut cells = 0;
+            while let Some(cell) = open.pop() {
+                cells += 1;
+                let faces = self.faces_of(cell).iter();
+                let beyond = faces.filter_map(|&face| self.beyond(cell, face as usize));
+                for other in beyond.map(|beyond| beyond.cell) {
+                    if !met[other] {
+                        met[other] = true;
+                        open.push(other);
+                    }
+                }
+            }
+            let centre = self.cell_centre[first];
+            pieces.push(MeshPiece { cells, centre });
+        }
+        pieces
     }
 
     /// The largest Courant number that gas of these velocities in m/s has over a step in s: Δt Σ |u·S|/(2 V), twice the
@@ -87,6 +127,23 @@ impl Mesh {
     fn between(&self, face: usize) -> Vec3 {
         let [owner, neighbour] = [self.topology.owner[face], self.topology.neighbour[face]];
         self.cell_centre[neighbour as usize] - self.cell_centre[owner as usize]
+    }
+
+    fn thickness_ratio(&self) -> Option<InCell> {
+        let thickness = |cell: u32, face: usize| {
+            let way = self.face_centre[face] - self.cell_centre[cell as usize];
+            way.dot(&self.face_area[face]).abs()
+        };
+        let ratios = (0..self.internal_faces()).map(|face| {
+            let cells = [self.topology.owner[face], self.topology.neighbour[face]];
+            let [own, other] = cells.map(|cell| thickness(cell, face));
+            (
+                own.max(other) / own.min(other),
+                cells[usize::from(other < own)],
+            )
+        });
+        let (value, cell) = ratios.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(self.in_cell(cell as usize, value))
     }
 
     fn angle(&self, face: usize) -> f64 {
@@ -183,6 +240,19 @@ mod tests {
             at(skew.centre.z, 0.015) || skew.centre.z < 0.02,
             "{quality:?}"
         );
+    }
+
+    #[test]
+    fn a_layer_that_is_thinner_than_the_ones_beside_it_is_found() {
+        assert!((moved(|x| x).quality().unwrap().thickness_ratio.value - 1.0).abs() < 1e-9);
+        // The layer from 20 to 30 mm becomes 0.1 mm thick.
+        let mesh = moved(|x| {
+            let above = if x.z > 0.025 { 9.9e-3 } else { 0.0 };
+            Vec3::new(x.x, x.y, x.z - above)
+        });
+        let found = mesh.quality().unwrap().thickness_ratio;
+        assert!((found.value - 100.0).abs() < 1e-6, "{found:?}");
+        assert!((found.centre.z - 0.020_05).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

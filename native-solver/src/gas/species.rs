@@ -345,7 +345,12 @@ impl SpeciesEquations {
             };
             let (found, faces) = (&mut self.temperature_gradients, &mut self.faces);
             gradients(grid, &now.temperature, boundary, found, faces);
-            bounds(grid, &now.temperature, boundary, &mut self.temperature_bounds);
+            bounds(
+                grid,
+                &now.temperature,
+                boundary,
+                &mut self.temperature_bounds,
+            );
         }
         let mut carried = std::mem::take(&mut self.carried);
         fill(&mut carried, |index| {

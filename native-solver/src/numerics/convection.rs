@@ -38,12 +38,14 @@ fn downstream(grid: &MeshGraph, index: usize, flux: f64) -> Vec3 {
     if flux >= 0.0 { line } else { -line }
 }
 
-/// A scalar in the cells: its values, their gradients, and the least and the largest value of each cell and what is beside it, which
-/// schemes without a limiter do not look at.
+/// A scalar in the cells, as schemes of convection see it; those without a limiter do not look at the bounds.
 #[derive(Clone, Copy, Debug)]
 pub struct Field<'a> {
+    /// Values of the cells.
     pub values: &'a [f64],
+    /// Their gradients.
     pub gradients: &'a [Vec3],
+    /// The least and the largest value of each cell and what is beside it.
     pub bounds: &'a [[f64; 2]],
 }
 
@@ -60,7 +62,7 @@ impl Field<'_> {
 }
 
 /// Finds the least and the largest value of each cell and what is beside it; `boundary(face, value of its cell)` is the value on the
-/// boundary where one is given.
+/// boundary where one is given. There the difference counts twice: a cell beside would lie as far behind the face.
 pub fn bounds(
     grid: &MeshGraph,
     values: &[f64],
@@ -70,7 +72,7 @@ pub fn bounds(
     fill(bounds, |cell| {
         let own = values[cell];
         let beside = |link: &CellFace| match link.is_boundary() {
-            true => boundary(link.face as usize, own).unwrap_or(own),
+            true => boundary(link.face as usize, own).map_or(own, |value| 2.0 * value - own),
             false => values[link.other as usize],
         };
         let widen = |[least, largest]: [f64; 2], value: f64| [least.min(value), largest.max(value)];
@@ -117,13 +119,7 @@ pub fn beyond_upwind(
 /// The limiter ψ of an internal face for a scalar, in [0, 2]. Where there is noise, differences Δ well below it limit nobody, so that a
 /// field that is uniform but for what solvers leave does not steer others that share its limiter: ψ s + 2 (1 − s), s = Δ²/(Δ² + noise²).
 #[inline]
-pub fn limiter(
-    grid: &MeshGraph,
-    index: usize,
-    flux: f64,
-    field: Field<'_>,
-    noise: f64,
-) -> f64 {
+pub fn limiter(grid: &MeshGraph, index: usize, flux: f64, field: Field<'_>, noise: f64) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
     let difference = field.values[down] - field.values[up];
     let other = field.behind(grid, index, flux);
@@ -204,20 +200,56 @@ mod tests {
         MeshGraph::new(&box_mesh(&spec).unwrap())
     }
 
+    /// Without bounds.
+    const ANY: [[f64; 2]; 6] = [[f64::NEG_INFINITY, f64::INFINITY]; 6];
+
+    fn field<'a>(values: &'a [f64], gradients: &'a [Vec3]) -> Field<'a> {
+        Field {
+            values,
+            gradients,
+            bounds: &ANY,
+        }
+    }
+
     #[test]
     fn a_linear_field_is_interpolated_exactly_and_an_extremum_stays_upwind() {
         let grid = chain();
         let slope = vec![Vec3::new(2.0, 0.0, 0.0); 3];
         for flux in [1.0, -1.0] {
             let values = [1.0, 3.0, 5.0];
-            let beyond = beyond_upwind(Convection::VanLeer, &grid, 0, flux, &values, &slope);
+            let beyond = beyond_upwind(Convection::VanLeer, &grid, 0, flux, field(&values, &slope));
             assert!((beyond - flux).abs() < 1e-14);
-            assert!((limiter(&grid, 0, flux, (&values, &slope), 0.0) - 1.0).abs() < 1e-14);
+            assert!((limiter(&grid, 0, flux, field(&values, &slope), 0.0) - 1.0).abs() < 1e-14);
         }
         let flat = vec![Vec3::zeros(); 3];
         let values = [1.0, 3.0, 1.0];
-        let beyond = beyond_upwind(Convection::VanLeer, &grid, 0, 1.0, &values, &flat);
+        let beyond = beyond_upwind(Convection::VanLeer, &grid, 0, 1.0, field(&values, &flat));
         assert_eq!(beyond, 0.0);
+    }
+
+    /// Cells 1, 3, 5 whose gradient leads to −1 behind the second: not below the 1 that is there.
+    #[test]
+    fn what_a_gradient_leads_to_is_bounded_by_the_cells_beside() {
+        let grid = chain();
+        let (values, slope) = ([1.0, 3.0, 5.0], [Vec3::new(3.0, 0.0, 0.0); 3]);
+        let mut found = [[0.0; 2]; 3];
+        bounds(
+            &grid,
+            &values,
+            |face, _| (face == grid.internal).then_some(0.5),
+            &mut found,
+        );
+        assert_eq!(found, [[0.0, 3.0], [1.0, 5.0], [3.0, 5.0]]);
+        let scheme = Convection::VanLeer;
+        // a = 2 and Δ = 2, for 4 and 2 without bounds.
+        let bounded = Field {
+            values: &values,
+            gradients: &slope,
+            bounds: &found,
+        };
+        assert!((beyond_upwind(scheme, &grid, 1, 1.0, bounded) - 1.0).abs() < 1e-14);
+        let free = beyond_upwind(scheme, &grid, 1, 1.0, field(&values, &slope));
+        assert!((free - 4.0 / 3.0).abs() < 1e-14, "{free}");
     }
 
     #[test]
@@ -225,8 +257,13 @@ mod tests {
         let grid = chain();
         for k in 0..100 {
             let slope = vec![Vec3::new(f64::from(k) - 50.0, 0.0, 0.0); 3];
-            let beyond =
-                beyond_upwind(Convection::VanLeer, &grid, 0, 1.0, &[1.0, 3.0, 5.0], &slope);
+            let beyond = beyond_upwind(
+                Convection::VanLeer,
+                &grid,
+                0,
+                1.0,
+                field(&[1.0, 3.0, 5.0], &slope),
+            );
             assert!((0.0..=2.0).contains(&beyond), "{beyond}");
         }
     }
@@ -248,7 +285,7 @@ mod tests {
             let scheme = Convection::LimitedLinear(k);
             // r = 2 g d/Δ − 1 with d = 1 and Δ = 2.
             let slope = vec![Vec3::new(gradient, 0.0, 0.0); 3];
-            let beyond = beyond_upwind(scheme, &grid, 0, 1.0, &values, &slope);
+            let beyond = beyond_upwind(scheme, &grid, 0, 1.0, field(&values, &slope));
             assert!((beyond - psi).abs() < 1e-14, "{k} {gradient}: {beyond}");
             // A vector of two such components has the same limiter.
             let vectors = values.map(|value| Vec3::new(value, 0.0, -value));
@@ -304,7 +341,7 @@ mod tests {
             for (flux, up) in [(1.0, face.owner), (-1.0, face.neighbour)] {
                 for share in [1.0, 0.75] {
                     let scheme = Convection::Central(share);
-                    let beyond = beyond_upwind(scheme, &grid, index, flux, &values, &slopes);
+                    let beyond = beyond_upwind(scheme, &grid, index, flux, field(&values, &slopes));
                     let wanted = share * (slope.dot(&at) - values[up]);
                     assert!((beyond - wanted).abs() < 1e-13, "{beyond} {wanted}");
                     let beyond =
@@ -319,7 +356,7 @@ mod tests {
     fn what_a_solver_leaves_of_a_uniform_field_limits_nobody() {
         let grid = chain();
         let flat = vec![Vec3::zeros(); 3];
-        let limits = |values: [f64; 3]| limiter(&grid, 0, 1.0, (&values, &flat), 1e-8);
+        let limits = |values: [f64; 3]| limiter(&grid, 0, 1.0, field(&values, &flat), 1e-8);
         assert_eq!(limits([0.3, 0.3, 0.3]), 2.0);
         for noise in [1e-16, 1e-12, 1e-10] {
             assert!(limits([0.3, 0.3 + noise, 0.3 - noise]) > 1.99);
