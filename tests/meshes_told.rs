@@ -97,6 +97,28 @@ fn a_thin_layer_between_thick_ones_is_warned_of() {
 }
 
 #[test]
+fn a_patch_without_a_condition_is_refused_alike_with_both_gases() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    let block = Block {
+        levels: [even(4), even(2), even(6)],
+        patches: ["west", "side", "side", "side", "bottom", "top"],
+        hole: None,
+        shape: &upright,
+    };
+    block.write(folder.path());
+    for gas in ["native", "openfoam"] {
+        let words = ["run", "case.toml", "--gas", gas, "--out", "out"];
+        let (code, said) = calcine(folder.path(), &words, &[]);
+        assert_eq!(code, Some(2), "{gas}: {said}");
+        assert!(
+            said.contains("give it one in `gas.patch.west`"),
+            "{gas}: {said}"
+        );
+    }
+}
+
+#[test]
 fn check_prints_where_the_mesh_of_a_file_begins_and_ends() {
     let folder = tempfile::tempdir().unwrap();
     duct(folder.path(), &upright);

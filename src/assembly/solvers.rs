@@ -17,7 +17,7 @@ use calcine_coupler::part::{Gas, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::GasStart;
 use calcine_coupler::supervisor::Supervisor;
-use calcine_native::gas::NativeGas;
+use calcine_native::gas::{NativeGas, match_patches};
 use calcine_native::parcels::NativeParcels;
 use calcine_native::particles::NativeParticles;
 
@@ -63,7 +63,8 @@ pub fn write_inputs(
     Ok(written)
 }
 
-/// Refuses what the native solvers of a pairing would refuse at their start, and an external gas that is not named.
+/// Refuses what the native solvers of a pairing would refuse at their start, patches that do not match, and an external gas that is
+/// not named.
 pub fn native_parts(
     case: &Case,
     prepared: &PreparedCase,
@@ -71,6 +72,8 @@ pub fn native_parts(
 ) -> Result<(), AssemblyError> {
     if pairing.gas == GasBackend::Native && !case.gas_held {
         NativeGas::new(Arc::clone(&prepared.mesh), &case.gas)?;
+    } else if pairing.gas == GasBackend::Openfoam && !case.gas_held {
+        match_patches(&prepared.mesh, &case.gas)?;
     }
     if pairing.gas == GasBackend::External && case.external_gas.is_none() {
         return Err(AssemblyError::NoExternalGas);

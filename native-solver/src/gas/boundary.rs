@@ -125,17 +125,34 @@ impl BoundaryGas {
     }
 }
 
+/// Checks that each boundary condition has its patch of the mesh, and each patch with faces its condition.
+pub fn match_patches(mesh: &Mesh, setup: &GasSetup) -> Result<(), NativeError> {
+    for (name, _) in &setup.patches {
+        if mesh.patch(name).is_none() {
+            let present: Vec<_> = mesh.patches().iter().map(|p| p.name.as_str()).collect();
+            return Err(NativeError::NoPatch {
+                patch: name.clone(),
+                present: present.join(", "),
+            });
+        }
+    }
+    let mut patches = mesh.patches().iter().filter(|patch| patch.count > 0);
+    patches.try_for_each(|patch| condition_of(setup, &patch.name).map(drop))
+}
+
+fn condition_of<'a>(setup: &'a GasSetup, patch: &str) -> Result<&'a GasPatch, NativeError> {
+    let named = setup.patches.iter().find(|(name, _)| name == patch);
+    let lacking = || NativeError::NoCondition {
+        patch: patch.to_owned(),
+    };
+    named.map(|(_, condition)| condition).ok_or_else(lacking)
+}
+
 impl Boundaries {
     /// Matches the setup's patches with the mesh's and checks their numbers.
     pub fn new(mesh: &Mesh, setup: &GasSetup) -> Result<Self, NativeError> {
+        match_patches(mesh, setup)?;
         for (name, condition) in &setup.patches {
-            if mesh.patch(name).is_none() {
-                let present: Vec<_> = mesh.patches().iter().map(|p| p.name.as_str()).collect();
-                return Err(NativeError::NoPatch {
-                    patch: name.clone(),
-                    present: present.join(", "),
-                });
-            }
             check(name, condition)?;
             let laminar = matches!(
                 condition,
@@ -156,12 +173,7 @@ impl Boundaries {
             patch_of: Vec::with_capacity(mesh.faces() - mesh.internal_faces()),
         };
         for patch in mesh.patches().iter().filter(|patch| patch.count > 0) {
-            let named = setup.patches.iter().find(|(name, _)| *name == patch.name);
-            let Some((_, condition)) = named else {
-                return Err(NativeError::NoCondition {
-                    patch: patch.name.clone(),
-                });
-            };
+            let condition = condition_of(setup, &patch.name)?;
             let joined = mesh.periodic_pair(patch.start).is_some();
             if joined != matches!(condition, GasPatch::Periodic { .. }) {
                 return Err(NativeError::NotJoined {

@@ -46,6 +46,7 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
 use boundary::Boundaries;
+pub use boundary::match_patches;
 pub use error::NativeError;
 pub use failure::GasFailure;
 use failure::Place;
