@@ -5,9 +5,10 @@
 use std::fs;
 
 use calcine::case::model::{GasPlace, Measure, ParticlePlace, Probe, Statistic};
+use calcine::results::{Summary, read};
 use calcine_coupler::physics::Vec3;
 
-use crate::support::fake;
+use crate::support::{fake, program};
 
 /// Each measure against a value that reaches the series by another way.
 #[test]
@@ -38,6 +39,10 @@ fn quantities_of_the_gas_of_patches_of_probes_and_of_populations_are_what_they_s
         over,
         statistic,
     };
+    let populations = |of: &[u32]| ParticlePlace::Among {
+        populations: Some(of.to_vec()),
+        zone: None,
+    };
     let patch = |name: &str| GasPlace::Patch(name.into());
     add(
         "hottest",
@@ -55,16 +60,8 @@ fn quantities_of_the_gas_of_patches_of_probes_and_of_populations_are_what_they_s
         "K",
         particles(ParticlePlace::Probe("third".into()), Statistic::Mean),
     );
-    add(
-        "all",
-        "K",
-        particles(ParticlePlace::Population(0), Statistic::Max),
-    );
-    add(
-        "none",
-        "K",
-        particles(ParticlePlace::Population(9), Statistic::Max),
-    );
+    add("all", "K", particles(populations(&[0]), Statistic::Max));
+    add("none", "K", particles(populations(&[9]), Statistic::Max));
     add(
         "gas",
         "K",
@@ -97,4 +94,107 @@ fn quantities_of_the_gas_of_patches_of_probes_and_of_populations_are_what_they_s
         .unwrap();
     let at_point: f64 = row.split(',').nth(5).unwrap().parse().unwrap();
     assert_eq!(column("quantities.gas").last(), Some(&at_point));
+}
+
+/// The drum of glass beads, its first 40 ms, with a measure of each kind.
+const MEASURED: &str = r#"
+[[quantities]]
+name = "count"
+measure = { particles = "count", population = "beads" }
+[[quantities]]
+name = "count_low"
+measure = { particles = "count", material = "glass", zone = { box = { from = "-51 0 -51 mm", to = "51 25 -28 mm" } } }
+[[quantities]]
+name = "mass_round"
+measure = { particles = "mass", statistic = "sum", zone = { cylinder = { from = "0 0 0 mm", to = "0 25 0 mm", radius = "28 mm" } } }
+[[quantities]]
+name = "x"
+measure = { particles = "x", population = "beads between", statistic = "mean" }
+[[quantities]]
+name = "y"
+measure = { particles = "y", statistic = "deviation" }
+[[quantities]]
+name = "z"
+measure = { particles = "z", statistic = "min" }
+[[quantities]]
+name = "energy"
+measure = { particles = "kinetic_energy", statistic = "sum" }
+[[quantities]]
+name = "spin"
+measure = { particles = "angular_speed", statistic = "mean" }
+[[quantities]]
+name = "spread"
+measure = { particles = "angular_speed", statistic = "deviation" }
+"#;
+
+/// Against sums over the particles of the snapshot.
+#[test]
+fn counts_sums_and_deviations_of_particles_are_those_of_the_snapshot() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = fs::read_to_string(program::shipped("rotating-drum")).unwrap();
+    let case = case.split("[[quantities]]").next().unwrap().to_owned() + MEASURED;
+    let file = folder.path().join("drum.toml");
+    fs::write(&file, case).unwrap();
+    let out = folder.path().join("out");
+    let set = [
+        "time.end=40 ms",
+        "output.every=40 ms",
+        "output.series_every=40 ms",
+    ];
+    let set = [&set[..], &["output.particles=[\"velocity\", \"mass\"]"]].concat();
+    program::run(&file, &out, &[], &set);
+    let summary = Summary::read(&out).unwrap();
+    let found = |name: &str| summary.quantities[name].value.unwrap();
+    let files = read::collection(&out, "particles.pvd").unwrap();
+    let arrays = read::arrays(&files.last().unwrap().1).unwrap();
+    let list = |name: &str| &arrays[name].values[..];
+    let (place, speed) = (list("points"), list("velocity"));
+    let (mass, radius, kind) = (list("mass"), 2.5e-3, list("population"));
+    let rows = 0..mass.len();
+    let at = |row: usize, axis: usize| place[3 * row + axis];
+    let close = |name: &str, value: f64| {
+        let off = (found(name) - value).abs() / value.abs();
+        assert!(off < 1e-10, "{name}: {} for {value}", found(name));
+    };
+    close(
+        "count",
+        kind.iter().filter(|kind| **kind == 0.0).count() as f64,
+    );
+    let low = rows.clone().filter(|row| at(*row, 2) <= -0.028).count();
+    assert!(low > 10);
+    close("count_low", low as f64);
+    let round = rows
+        .clone()
+        .filter(|row| at(*row, 0).hypot(at(*row, 2)) <= 0.028);
+    close("mass_round", round.map(|row| mass[row]).sum());
+    let between: Vec<f64> = rows
+        .clone()
+        .filter(|row| kind[*row] == 1.0)
+        .map(|row| at(row, 0))
+        .collect();
+    close("x", between.iter().sum::<f64>() / between.len() as f64);
+    let mean = rows.clone().map(|row| at(row, 1)).sum::<f64>() / mass.len() as f64;
+    let square = rows
+        .clone()
+        .map(|row| (at(row, 1) - mean).powi(2))
+        .sum::<f64>()
+        / mass.len() as f64;
+    close("y", square.sqrt());
+    close(
+        "z",
+        rows.clone()
+            .map(|row| at(row, 2))
+            .fold(f64::INFINITY, f64::min),
+    );
+    // Beads are alike, so that the energy of spin is that of the mean square.
+    let square = found("spin").powi(2) + found("spread").powi(2);
+    assert!(square > 0.0);
+    let spin = 0.5 * 0.4 * radius * radius * square * mass.iter().sum::<f64>();
+    let flight = rows.map(|row| {
+        0.5 * mass[row]
+            * (0..3)
+                .map(|axis| speed[3 * row + axis].powi(2))
+                .sum::<f64>()
+    });
+    close("energy", flight.sum::<f64>() + spin);
 }

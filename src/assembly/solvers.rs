@@ -185,6 +185,7 @@ impl Assembly<'_> {
                 Ok(Box::new(gas))
             }
             GasBackend::Openfoam => {
+                match_patches(&self.prepared.mesh, &self.case.gas)?;
                 let other = self.other_gas()?;
                 let launch = OpenfoamLaunch {
                     setup: &self.case.gas,

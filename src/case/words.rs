@@ -254,9 +254,15 @@ case_words! {
         "temperature" => ParticleField("temperature"),
         "speed" => ParticleField("speed"),
         "height" => ParticleField("height"),
+        "x" => ParticleField("x"),
+        "y" => ParticleField("y"),
+        "z" => ParticleField("z"),
+        "angular_speed" => ParticleField("angular_speed"),
+        "kinetic_energy" => ParticleField("kinetic_energy"),
+        "count" => ParticleField("count"),
         "mass" => ParticleField("mass"),
         "diameter" => ParticleField("diameter"),
         "mass_fraction" => ParticleField("mass_fraction"),
     }
-    Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max }
+    Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max, "sum" => Statistic::Sum, "deviation" => Statistic::Deviation }
 }

@@ -22,15 +22,34 @@ pub fn allowance(band: ToleranceBand, value: f64) -> f64 {
     }
 }
 
-/// A statistic over values; NaN where there are none.
+/// A statistic over values; NaN where there are none, the sum 0.
 pub(crate) fn statistic(statistic: Statistic, values: &[f64]) -> f64 {
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    match statistic {
-        Statistic::Mean => values.iter().sum::<f64>() / values.len() as f64,
-        Statistic::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
-        Statistic::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    weighted(statistic, values.iter().map(|value| (*value, 1.0)))
+}
+
+/// A statistic over pairs of value and weight; NaN where there are none, the sum 0.
+fn weighted(which: Statistic, pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let values = || pairs.clone().map(|pair| pair.0);
+    let sum = || {
+        pairs
+            .clone()
+            .map(|(value, weight)| value * weight)
+            .sum::<f64>()
+    };
+    let total = || pairs.clone().map(|pair| pair.1).sum::<f64>();
+    match which {
+        Statistic::Mean => sum() / total(),
+        Statistic::Min => values().fold(f64::NAN, f64::min),
+        Statistic::Max => values().fold(f64::NAN, f64::max),
+        // That of no values is −0.
+        Statistic::Sum => sum() + 0.0,
+        Statistic::Deviation => {
+            let mean = sum() / total();
+            let off = pairs
+                .clone()
+                .map(|(value, weight)| weight * (value - mean).powi(2));
+            (off.sum::<f64>() / total()).sqrt()
+        }
     }
 }
 
@@ -70,7 +89,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
         }
         Measure::Difference { field, patches } => {
             let of = (field.as_str(), None);
-            let mean = |patch| weighted(Statistic::Mean, &on_patch(moment, of, patch));
+            let mean = |patch| weighted(Statistic::Mean, on_patch(moment, of, patch).into_iter());
             mean(&patches[0]) - mean(&patches[1])
         }
         Measure::Gas {
@@ -90,7 +109,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
                         .collect()
                 }
             };
-            weighted(*which, &values)
+            weighted(*which, values.into_iter())
         }
         Measure::Particles {
             field,
@@ -101,11 +120,16 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
             let (bed, all) = (moment.particles, &values[..]);
             let pair = |(row, &value): (usize, &f64)| (value, bed.weight_of(row));
             let values: Vec<(f64, f64)> = match over {
-                ParticlePlace::Everywhere => all.iter().enumerate().map(pair).collect(),
-                ParticlePlace::Population(index) => {
+                ParticlePlace::Among { populations, zone } => {
+                    let counts = |row: usize| {
+                        let own = bed.population.get(row);
+                        populations
+                            .as_ref()
+                            .is_none_or(|all| own.is_some_and(|own| all.contains(own)))
+                            && zone.is_none_or(|zone| zone.holds(bed.position[row]))
+                    };
                     let rows = all.iter().enumerate();
-                    let own = rows.filter(|(row, _)| bed.population.get(*row) == Some(index));
-                    own.map(pair).collect()
+                    rows.filter(|(row, _)| counts(*row)).map(pair).collect()
                 }
                 ParticlePlace::Probe(probe) => {
                     let places = site(sites, probe)
@@ -116,7 +140,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
                         .collect()
                 }
             };
-            weighted(*which, &values)
+            weighted(*which, values.into_iter())
         }
         Measure::WallHeat { wall } => {
             let warm = moment.reservoirs.iter().zip(moment.reservoir_heat);
@@ -149,13 +173,31 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
 /// A field of all particles; speeds are those of process time.
 fn of_particles(moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<f64> {
     let bed = moment.particles;
+    let acceleration = moment.window.map_or(1.0, |window| window.acceleration());
+    let speeds = |rates: &[Vec3]| {
+        rates
+            .iter()
+            .map(|rate| rate.norm() / acceleration)
+            .collect::<Vec<_>>()
+    };
+    let along = |axis: usize| bed.position.iter().map(|centre| centre[axis]).collect();
     match field {
-        "speed" => {
-            let acceleration = moment.window.map_or(1.0, |window| window.acceleration());
-            let speed = |velocity: &Vec3| velocity.norm() / acceleration;
-            bed.velocity.iter().map(speed).collect()
+        "speed" => speeds(bed.velocity),
+        "angular_speed" => speeds(bed.angular_velocity),
+        "kinetic_energy" => {
+            let (flight, spin) = (speeds(bed.velocity), speeds(bed.angular_velocity));
+            let energy = |row: usize| {
+                // Of a solid sphere; 0 where a solver has no spin.
+                let inertia = 0.4 * bed.radius[row].powi(2);
+                let spin = spin.get(row).copied().unwrap_or(0.0);
+                0.5 * moment.particle_mass[row] * (flight[row].powi(2) + inertia * spin.powi(2))
+            };
+            (0..bed.len()).map(energy).collect()
         }
-        "height" => bed.position.iter().map(|centre| centre.z).collect(),
+        "count" => vec![1.0; bed.len()],
+        "x" => along(0),
+        "y" => along(1),
+        "height" | "z" => along(2),
         "mass" => moment.particle_mass.to_vec(),
         "diameter" => bed.radius.iter().map(|radius| 2.0 * radius).collect(),
         "mass_fraction" => {
@@ -183,20 +225,6 @@ fn surface_angle(position: &[Vec3], mass: &[f64], point: &Vec3, axis: &Vec3, dow
 
 fn site<'s>(sites: &'s [Site], name: &str) -> Option<&'s Site> {
     sites.iter().find(|site| site.probe.name == name)
-}
-
-/// A statistic over pairs of value and weight; NaN where there are none.
-fn weighted(which: Statistic, pairs: &[(f64, f64)]) -> f64 {
-    if which == Statistic::Mean {
-        let total: f64 = pairs.iter().map(|pair| pair.1).sum();
-        return pairs
-            .iter()
-            .map(|(value, weight)| value * weight)
-            .sum::<f64>()
-            / total;
-    }
-    let values: Vec<f64> = pairs.iter().map(|pair| pair.0).collect();
-    statistic(which, &values)
 }
 
 /// A field by its name, and which species it is of.
@@ -347,6 +375,27 @@ pub(super) fn overall<'a>(results: impl Iterator<Item = &'a QuantityResult>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn statistics_count_by_weights() {
+        let pairs = [(1.0, 2.0), (4.0, 1.0), (-2.0, 1.0)];
+        let of = |which| weighted(which, pairs.into_iter());
+        assert_eq!(of(Statistic::Mean), 1.0);
+        assert_eq!(of(Statistic::Sum), 4.0);
+        // Squares of what is off: 0, 9, 9.
+        assert_eq!(of(Statistic::Deviation), 4.5f64.sqrt());
+        assert_eq!((of(Statistic::Min), of(Statistic::Max)), (-2.0, 4.0));
+        let none = |which| weighted(which, std::iter::empty());
+        assert_eq!(none(Statistic::Sum), 0.0);
+        for which in [
+            Statistic::Mean,
+            Statistic::Min,
+            Statistic::Max,
+            Statistic::Deviation,
+        ] {
+            assert!(none(which).is_nan());
+        }
+    }
 
     #[test]
     fn a_bed_that_has_turned_by_an_angle_has_a_surface_of_that_slope() {

@@ -176,7 +176,7 @@ pub fn case() -> Case {
                 "K",
                 Measure::Particles {
                     field: "temperature".into(),
-                    over: ParticlePlace::Everywhere,
+                    over: ParticlePlace::EVERYWHERE,
                     statistic: Statistic::Mean,
                 },
                 Some(Expect {

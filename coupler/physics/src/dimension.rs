@@ -56,6 +56,7 @@ dimensions! {
     ANGULAR_VELOCITY = [0, 0, -1, 0, 0], "an angular velocity", "rad/s", "3 rad/s";
     FORCE = [1, 1, -2, 0, 0], "a force", "N", "50 mN";
     STIFFNESS = [0, 1, -2, 0, 0], "a stiffness", "N/m", "1 kN/m";
+    ENERGY = [2, 1, -2, 0, 0], "an energy", "J", "2 mJ";
     POWER = [2, 1, -3, 0, 0], "a power", "W", "10 W";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "kg/mol", "28.96 g/mol";
     MOLAR_ENERGY = [2, 1, -2, 0, -1], "a molar energy", "J/mol", "70 kJ/mol";

@@ -1,6 +1,7 @@
 //! Keys of `quantities`.
 
 use super::prelude::*;
+use super::zone::ZONE;
 
 #[rustfmt::skip]
 const MEASURE_SURFACE_ANGLE: &[Key] = &[
@@ -16,9 +17,11 @@ const MEASURE: &[Key] = &[
     key("patch", Text, Without("all cells"), "The patch, with `gas`; the mean is over its area.", "\"top\""),
     key("probe", Text, Without("everywhere"), "The probe, with `gas` or `particles`.", "\"axis\""),
     key("of", Text, Without("none"), "The species of the gas, or the solid of particles that react, of which a `mass_fraction` is; required with it.", "\"CO2\""),
-    key("particles", Choice(words::<ParticleField>), OneOf, "A statistic (of the height, z, of the centre, or of the speed in process time, too) over all particles, over those of `population` or over those at `probe`.", "\"temperature\""),
+    key("particles", Choice(words::<ParticleField>), OneOf, "A statistic over all particles, over those of `population`, `material` and `zone`, or over those at `probe`. Speeds and the kinetic energy (of flight and spin) are of process time, `height` is z, `count` is 1 for each.", "\"temperature\""),
     key("population", Text, Without("all"), "The population, with `particles`.", "\"beads\""),
-    key("statistic", Choice(words::<Statistic>), Without("with `probe` the mean"), "The statistic; required with `gas` and `particles`.", "\"mean\""),
+    key("material", Text, Without("all"), "The material, with `particles`.", "\"glass\""),
+    key("zone", Table(ZONE), Without("everywhere"), "Where the centres lie of the particles that count, with `particles`.", "{ box = { from = \"0 0 0 mm\", to = \"10 10 50 mm\" } }"),
+    key("statistic", Choice(words::<Statistic>), Without("with `probe` the mean, of `count` the sum"), "The statistic; required with `gas` and `particles`. `sum` is for `count`, `mass` and `kinetic_energy`; particles count by their weights, gas by its volume or area.", "\"mean\""),
     key("particle", Choice(words::<ParticleField>), OneOf, "The value of one particle.", "\"temperature\""),
     key("number", Whole(1, MOST), Without("none"), "Which particle, counted from 1; required with `particle`.", "10"),
     key("wall_heat", Text, OneOf, "Heat in W from a wall of a temperature, or from `surroundings`, into the particles.", "\"hot\""),

@@ -1,5 +1,6 @@
 //! Probes and quantities of interest.
 
+use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
 
 /// Points at which fields are sampled.
@@ -58,11 +59,11 @@ pub enum Measure {
     },
     /// Statistic over particles.
     Particles {
-        /// Field: `temperature` (K).
+        /// Field: `temperature` (K), `count` (1), and others of the case file.
         field: String,
         /// Which.
         over: ParticlePlace,
-        /// `mean`, `min` or `max`.
+        /// Statistic.
         statistic: Statistic,
     },
     /// Heat in W from a wall of a temperature, or from the surroundings, into the particles.
@@ -107,17 +108,29 @@ pub enum GasPlace {
 }
 
 /// Of which particles a statistic is taken.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ParticlePlace {
-    /// Of all.
-    Everywhere,
-    /// Of one population, by its index.
-    Population(u32),
+    /// Of those of populations, by their indices, whose centres lie in a zone; of all of them, and wherever they are, where nothing
+    /// is stated.
+    Among {
+        /// The populations.
+        populations: Option<Vec<u32>>,
+        /// The zone.
+        zone: Option<Zone>,
+    },
     /// Of those at the points of a probe.
     Probe(String),
 }
 
-/// Statistics.
+impl ParticlePlace {
+    /// All particles.
+    pub const EVERYWHERE: Self = Self::Among {
+        populations: None,
+        zone: None,
+    };
+}
+
+/// Statistics; each particle counts by its weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Statistic {
     /// Arithmetic mean.
@@ -126,6 +139,10 @@ pub enum Statistic {
     Min,
     /// Largest.
     Max,
+    /// Sum.
+    Sum,
+    /// Standard deviation.
+    Deviation,
 }
 
 /// A band around a value.

@@ -136,6 +136,7 @@ pub(super) fn case(
         let known = quantities::Known {
             mesh: mesh.as_ref(),
             populations: particles.as_deref(),
+            materials: &materials,
             probes: &probes,
             walls: &walls,
             bodies: &bodies,

@@ -9,9 +9,10 @@ use super::bodies::of_name;
 use super::common::name_in_results;
 use super::common::patches;
 use super::walls::direction;
+use super::zone::zone as zone_from;
 use crate::case::model::{
-    Expect, GasPlace, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population, Probe, Quantity,
-    SURROUNDINGS, Statistic, belongs,
+    Expect, GasPlace, MaterialSpec, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population,
+    Probe, Quantity, SURROUNDINGS, Statistic, belongs,
 };
 use calcine_coupler::physics::solids::SolidSpecies;
 
@@ -70,10 +71,12 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "density" => (Dimension::DENSITY, "kg/m^3"),
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
-        "height" | "diameter" => (Dimension::LENGTH, "m"),
+        "height" | "x" | "y" | "z" | "diameter" => (Dimension::LENGTH, "m"),
+        "angular_speed" => (Dimension::ANGULAR_VELOCITY, "rad/s"),
+        "kinetic_energy" => (Dimension::ENERGY, "J"),
         "wall_heat" => (Dimension::POWER, "W"),
         "mass" => (Dimension::MASS, "kg"),
-        "mass_fraction" => (Dimension::NONE, "1"),
+        "mass_fraction" | "count" => (Dimension::NONE, "1"),
         "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
@@ -110,6 +113,7 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
 pub(super) struct Known<'a> {
     pub mesh: Option<&'a MeshSpec>,
     pub populations: Option<&'a [Population]>,
+    pub materials: &'a [MaterialSpec],
     pub probes: &'a [Probe],
     /// Walls, with the temperatures of those that have one.
     pub walls: &'a [(Wall, Option<Schedule>)],
@@ -204,7 +208,11 @@ fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
     let field = reader.choice("gas").map(|GasField(field)| field);
     let patch = reader.text("patch");
     let probe = reader.text("probe");
-    let statistic = statistic(reader, probe.is_some());
+    let statistic = statistic(reader, probe.is_some().then_some(Statistic::Mean));
+    if statistic == Some(Statistic::Sum) {
+        let help = "write \"mean\", which is over the volume of gas or the area of a patch";
+        reader.fail("statistic", "is \"sum\", which no gas field has", help);
+    }
     let over = match (patch, probe) {
         (Some(_), Some(_)) => {
             reader.fail("patch", "stands beside `probe`", "name one of them");
@@ -230,37 +238,98 @@ fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
 
 fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let field = reader.choice("particles").map(|ParticleField(field)| field);
-    let population = reader.text("population");
     let probe = reader.text("probe");
-    let statistic = statistic(reader, probe.is_some());
-    let over = match (population, probe) {
-        (Some(_), Some(_)) => {
-            reader.fail("population", "stands beside `probe`", "name one of them");
-            return None;
-        }
-        (Some(name), None) => {
-            // Where a population could not be read, its error is told there.
-            let all = known.populations?;
-            let found = all.iter().position(|population| population.name == name);
-            if found.is_none() {
-                let names: Vec<&str> = all.iter().map(|p| p.name.as_str()).collect();
-                let help = format!("the populations are {}", names.join(", "));
-                reader.fail("population", format!("is \"{name}\""), help);
-            }
-            ParticlePlace::Population(u32::try_from(found?).ok()?)
-        }
-        (None, Some(probe)) => ParticlePlace::Probe(checked_probe(reader, probe, known)?),
-        (None, None) => ParticlePlace::Everywhere,
+    let counts = field == Some("count");
+    let unstated = match counts {
+        true => Some(Statistic::Sum),
+        false => probe.is_some().then_some(Statistic::Mean),
     };
-    let field = field?;
+    let statistic = statistic(reader, unstated);
+    let over = particle_place(reader, probe, known);
+    let (field, statistic) = (field?, statistic?);
+    let summed = counts || ["mass", "kinetic_energy"].contains(&field);
+    if statistic == Statistic::Sum && !summed {
+        let help = "write \"mean\"; sums are of count, mass and kinetic_energy";
+        reader.fail("statistic", format!("is the sum of {field}"), help);
+    } else if counts && statistic != Statistic::Sum {
+        let help = "remove it, or write \"sum\"";
+        reader.fail("statistic", "is no statistic of a count", help);
+    }
     Some((
         Measure::Particles {
             field: field.into(),
-            over,
-            statistic: statistic?,
+            over: over?,
+            statistic,
         },
         field,
     ))
+}
+
+/// Which particles count.
+fn particle_place(
+    reader: &TableReader<'_>,
+    probe: Option<&str>,
+    known: &Known<'_>,
+) -> Option<ParticlePlace> {
+    let (population, material) = (reader.text("population"), reader.text("material"));
+    let zone = reader.table("zone");
+    if let Some(probe) = probe {
+        let others = ["population", "material", "zone"];
+        if let Some(other) = others.into_iter().find(|key| reader.has(key)) {
+            reader.fail(other, "stands beside `probe`", "name one of them");
+            return None;
+        }
+        return Some(ParticlePlace::Probe(checked_probe(reader, probe, known)?));
+    }
+    let zone = match zone {
+        Some(table) => {
+            let zone = zone_from(&table);
+            table.finish();
+            Some(zone?)
+        }
+        None => None,
+    };
+    if population.is_none() && material.is_none() {
+        let populations = None;
+        return Some(ParticlePlace::Among { populations, zone });
+    }
+    // Where a population could not be read, its error is told there.
+    let all = known.populations?;
+    let unknown = |key: &str, name: &str, others: Vec<&str>| {
+        let help = format!("there are {}", others.join(", "));
+        reader.fail(key, format!("is \"{name}\""), help);
+    };
+    let names = || all.iter().map(|one| one.name.as_str()).collect();
+    if let Some(name) = population
+        && !all.iter().any(|one| one.name == name)
+    {
+        unknown("population", name, names());
+        return None;
+    }
+    if let Some(name) = material
+        && !known.materials.iter().any(|one| one.name == name)
+    {
+        let others = known.materials.iter().map(|one| one.name.as_str());
+        unknown("material", name, others.collect());
+        return None;
+    }
+    let counts = |one: &Population| {
+        let made = known.materials.get(one.material);
+        population.is_none_or(|name| one.name == name)
+            && material.is_none_or(|name| made.is_some_and(|made| made.name == name))
+    };
+    let own = (0u32..).zip(all).filter(|(_, one)| counts(one));
+    let populations: Vec<u32> = own.map(|(index, _)| index).collect();
+    if populations.is_empty() {
+        let (key, help) = match population {
+            Some(_) => ("material", "remove one of them"),
+            None => ("material", "name a material of particles"),
+        };
+        reader.fail(key, "is that of no particles that are meant", help);
+        return None;
+    }
+    let populations = Some(populations);
+    Some(ParticlePlace::Among { populations, zone })
 }
 
 fn particle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
@@ -321,10 +390,10 @@ fn surface_angle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure
     Some((Measure::SurfaceAngle { point, axis, down }, "angle"))
 }
 
-/// The statistic; on a probe the mean, where none is named: it may be a single point.
-fn statistic(reader: &TableReader<'_>, probe: bool) -> Option<Statistic> {
-    if probe && !reader.has("statistic") {
-        return Some(Statistic::Mean);
+/// The statistic, or the one that is meant where none is named: on a probe, which may be a single point, the mean.
+fn statistic(reader: &TableReader<'_>, unstated: Option<Statistic>) -> Option<Statistic> {
+    if unstated.is_some() && !reader.has("statistic") {
+        return unstated;
     }
     reader.need("statistic");
     reader.choice("statistic")
