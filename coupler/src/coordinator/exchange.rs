@@ -3,6 +3,7 @@
 
 use super::bed::MappedBed;
 use super::error::RunError;
+use super::gas_iterate::GasIterate;
 use super::interior::InteriorStage;
 use super::laws::LawStage;
 use super::meter::{Meter, Stage};
@@ -11,14 +12,15 @@ use crate::error::{FailureKind, PartError};
 use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
 use crate::extreme::{larger, smaller};
 use crate::finite::check_told;
-use crate::part::{CellReceived, Convergence, Gas, GasFields, ParticleFields};
-use crate::smoother::Operator;
+use crate::part::{CellReceived, Convergence, Gas, ParticleFields};
 use crate::species_coupling::{ChannelLines, SpeciesCoupling};
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 use calcine_interior::Surroundings;
-use calcine_numerics::Anderson;
 use calcine_physics::Vec3;
+
+/// Share of the particles' mass whose exchange in a window is none at all for the convergence of attempts.
+const NOTHING: f64 = 1e-9;
 
 /// What the gas and the particles exchanged in the last attempt.
 #[derive(Default)]
@@ -204,7 +206,9 @@ impl ExchangeStage {
                 self.follow_rates(with);
                 let extrapolated = self.advance_iterate(with);
                 self.respond(with, window)?;
-                off = larger(larger(off, self.tell_rates(with)), extrapolated);
+                let rates = self.tell_rates(with);
+                tracing::debug!(bodies, rates, extrapolated, "apart");
+                off = larger(larger(off, rates), extrapolated);
             }
             let settled = off <= limits.tolerance;
             tracing::debug!(
@@ -436,135 +440,4 @@ impl ExchangeStage {
         } = with;
         meter.time(Stage::Interior, || interior.settle(took, window))
     }
-}
-
-/// The gas about which particles are linearised: that of the last attempt, accelerated by the history of the window.
-#[derive(Default)]
-struct GasIterate {
-    temperature: Vec<f64>,
-    composition: Vec<f64>,
-    pressure: Vec<f64>,
-    /// Logarithm of the mean pressure in Pa, which follows what reacts where gas cannot leave.
-    level: f64,
-    sampled_temperature: Vec<f64>,
-    acceleration: Anderson,
-    /// The gas of an earlier attempt, scaled.
-    kept: Vec<f64>,
-    /// Iterate and what came of it as one list, scaled.
-    before: Vec<f64>,
-    made: Vec<f64>,
-}
-
-/// Share of the particles' mass whose exchange in a window is none at all for the convergence of attempts.
-const NOTHING: f64 = 1e-9;
-/// Change of temperature in K that weighs as much as one of a mass fraction from none to one.
-const KELVIN: f64 = 1000.0;
-
-impl GasIterate {
-    /// Begins the attempts of a window.
-    fn begin(&mut self, operator: &Operator, gas: &GasFields<'_>) {
-        self.acceleration.clear();
-        self.temperature.clear();
-        self.temperature.extend_from_slice(gas.temperature);
-        self.composition.clear();
-        self.composition.extend_from_slice(gas.composition);
-        self.pressure.clear();
-        self.pressure.extend_from_slice(gas.pressure);
-        self.level = level(gas.pressure);
-        self.sample(operator);
-    }
-
-    /// Takes up what the gas made of the lines about the iterate. The result is how far the next one is from that gas:
-    /// the largest of the logarithm of their pressures, and the root mean squares of the differences of temperatures
-    /// (over [`KELVIN`]) and of mass fractions.
-    fn advance(&mut self, operator: &Operator, gas: &GasFields<'_>) -> f64 {
-        let cells = gas.temperature.len();
-        // The one level weighs as much as a field.
-        let weight = (cells.max(1) as f64).sqrt();
-        let made = level(gas.pressure);
-        scaled(
-            &self.temperature,
-            &self.composition,
-            self.level,
-            &mut self.before,
-        );
-        scaled(gas.temperature, gas.composition, made, &mut self.made);
-        self.acceleration.accelerate(&self.before, &mut self.made);
-        self.level = self.made.pop().map_or(made, |sum| sum / weight);
-        self.pressure.clear();
-        let shift = (self.level - made).exp();
-        self.pressure
-            .extend(gas.pressure.iter().map(|pascal| pascal * shift));
-        let species = gas.composition.len() / cells.max(1);
-        self.temperature.clear();
-        self.temperature.extend_from_slice(gas.temperature);
-        self.composition.clear();
-        self.composition.extend_from_slice(gas.composition);
-        let (temperature, composition) = self.made.split_at(cells);
-        let (mut warmer, mut other) = (0.0, 0.0);
-        for (cell, t) in temperature.iter().enumerate() {
-            let own = cell * species..(cell + 1) * species;
-            let fractions = &composition[own.clone()];
-            // Where it is extrapolated beyond what a gas can be, the gas of the attempt stays.
-            if *t > 0.0 && fractions.iter().all(|y| (0.0..=1.0).contains(y)) {
-                warmer += (t - self.temperature[cell] / KELVIN).powi(2);
-                let pairs = fractions.iter().zip(&self.composition[own.clone()]);
-                other += pairs.map(|(one, gas)| (one - gas).powi(2)).sum::<f64>();
-                self.temperature[cell] = t * KELVIN;
-                self.composition[own].copy_from_slice(fractions);
-            }
-        }
-        self.sample(operator);
-        let mean = |sum: f64| sum.sqrt() / weight;
-        let apart = larger((self.level - made).abs(), mean(warmer));
-        larger(apart, mean(other))
-    }
-
-    /// Keeps the gas of an attempt.
-    fn keep(&mut self, gas: &GasFields<'_>) {
-        let own = level(gas.pressure);
-        scaled(gas.temperature, gas.composition, own, &mut self.kept);
-    }
-
-    /// How far a gas is from the one that was kept: the root of the sum over temperature (over [`KELVIN`]), mass fractions
-    /// and logarithm of the mean pressure of their mean square differences.
-    fn moved(&mut self, gas: &GasFields<'_>) -> f64 {
-        let own = level(gas.pressure);
-        scaled(gas.temperature, gas.composition, own, &mut self.made);
-        let pairs = self.made.iter().zip(&self.kept);
-        let sum: f64 = pairs.map(|(now, before)| (now - before).powi(2)).sum();
-        (sum / gas.temperature.len().max(1) as f64).sqrt()
-    }
-
-    fn sample(&mut self, operator: &Operator) {
-        self.sampled_temperature.resize(operator.particles(), 0.0);
-        operator.sample(&self.temperature, &mut self.sampled_temperature);
-    }
-
-    /// The fields of the gas with pressure, temperature and composition of the iterate.
-    fn fields<'a>(&'a self, gas: GasFields<'a>) -> GasFields<'a> {
-        GasFields {
-            pressure: &self.pressure,
-            temperature: &self.temperature,
-            composition: &self.composition,
-            ..gas
-        }
-    }
-}
-
-/// A gas as one list: temperatures in K over [`KELVIN`], mass fractions, and the logarithm of its mean pressure, which weighs
-/// as much as a field.
-fn scaled(temperature: &[f64], composition: &[f64], level: f64, out: &mut Vec<f64>) {
-    out.clear();
-    out.extend(temperature.iter().map(|kelvin| kelvin / KELVIN));
-    out.extend_from_slice(composition);
-    out.push((temperature.len().max(1) as f64).sqrt() * level);
-}
-
-/// Logarithm of the mean pressure in Pa.
-fn level(pressure: &[f64]) -> f64 {
-    let sum: f64 = pressure.iter().sum();
-    (sum / pressure.len().max(1) as f64)
-        .max(f64::MIN_POSITIVE)
-        .ln()
 }

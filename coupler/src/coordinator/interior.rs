@@ -7,6 +7,7 @@ use calcine_interior::{
 };
 
 use super::error::RunError;
+use super::network_slope::slope_beside_network;
 use crate::bodies::HeatBodies;
 use crate::models::{ParticleModelError, ParticleModels, PopulationNewcomer};
 use crate::part::ParticleFields;
@@ -127,29 +128,21 @@ impl InteriorStage {
         Ok(())
     }
 
-    /// Tells the gas of particles that the network holds at a temperature that they do not follow it as alone.
-    ///
-    /// A particle alone takes K = 1/(1/hA + 1/c) from the gas, c being what it stores over the window; its heat from the network
-    /// would stay what it is. Where the network has a conductance G to it that is large against hA + c, the next look at the
-    /// network would take back more than that, and attempts would not end: there the line gets the slope of c + G, through the
-    /// heat of the gas as it was seen.
+    /// Tells the gas of particles that a network leads to that they do not follow it as alone, through the heat of the gas as it
+    /// was seen.
     fn stiffen(&mut self, around: &Surroundings<'_>) {
-        /// G/(hA + c) up to which attempts end quickly by themselves.
-        const SOFT: f64 = 0.5;
         let Some(network) = self.network.as_ref().filter(|network| !network.is_empty()) else {
             return;
         };
         for (row, stiffness) in network.stiffness.iter().enumerate() {
-            let (film, own) = (around.conductance[row], self.lines.conductance[row]);
-            let stores = film * own / (film - own);
-            if !(own < film && *stiffness > SOFT * (film + stores)) {
-                continue;
+            let own = self.lines.conductance[row];
+            let film = around.conductance[row];
+            if let Some(slope) = slope_beside_network(film, own, *stiffness) {
+                let seen = around.temperature[row];
+                let apart = own / slope * (seen - self.lines.temperature[row]);
+                self.lines.conductance[row] = slope;
+                self.lines.temperature[row] = seen - apart;
             }
-            let stiff = film * (stores + stiffness) / (film + stores + stiffness);
-            let seen = around.temperature[row];
-            let apart = own / stiff * (seen - self.lines.temperature[row]);
-            self.lines.conductance[row] = stiff;
-            self.lines.temperature[row] = seen - apart;
         }
     }
 
