@@ -78,4 +78,5 @@ mod vacuum;
 mod verification_beds;
 mod warned_and_refused;
 mod weights;
+mod wet_drum;
 mod window_drag;
