@@ -79,4 +79,5 @@ mod vacuum;
 mod verification_beds;
 mod warned_and_refused;
 mod weights;
+mod wet_drum;
 mod window_drag;

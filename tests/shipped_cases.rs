@@ -65,6 +65,7 @@ fn sources(case: &Path) -> (f64, f64) {
         "lime-burning" => (1000.0, 1200.0),
         "calcining-stone" => (1000.0, 1400.0),
         "dri-self-heating" => (300.0, 340.0),
+        "wet-drum" => (330.0, 1200.0),
         "tg-furnace" => (293.15, 303.15),
         "tg-heap" => (293.15, 293.15),
         _ => (300.0, 400.0),

@@ -23,3 +23,4 @@ mod openfoam_stirred_cells;
 mod openfoam_support;
 mod openfoam_templates;
 mod openfoam_trials;
+mod openfoam_turning_walls;

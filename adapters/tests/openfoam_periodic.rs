@@ -24,7 +24,7 @@ use calcine_coupler::time::{Clocks, Ticks, Window};
 
 use crate::openfoam_support::{exchange_of_nothing, setup};
 
-fn fluid(viscosity: f64) -> GasModel {
+pub fn fluid(viscosity: f64) -> GasModel {
     GasModel::Constant(ConstantGas {
         density: 1.0,
         heat_capacity: 1000.0,
@@ -44,7 +44,7 @@ fn no_slip() -> GasPatch {
     }
 }
 
-fn at_rest(patches: &[(&str, GasPatch)]) -> GasSetup {
+pub fn at_rest(patches: &[(&str, GasPatch)]) -> GasSetup {
     let mut setup = setup();
     setup.velocity = Vec3::zeros();
     setup.patches = patches
@@ -69,8 +69,8 @@ fn named_box(size: [f64; 3], cells: [usize; 3], pairs: &[[&str; 2]]) -> Mesh {
 }
 
 /// A running gas, driven window by window in an empty domain.
-struct Run {
-    gas: LinkedGas,
+pub struct Run {
+    pub gas: LinkedGas,
     supervisor: Supervisor,
     window: Window,
     received: CellReceived,
@@ -79,7 +79,7 @@ struct Run {
 }
 
 impl Run {
-    fn new(mesh: &Mesh, setup: &GasSetup, start: Option<&GasStart>, ranks: u32) -> Self {
+    pub fn new(mesh: &Mesh, setup: &GasSetup, start: Option<&GasStart>, ranks: u32) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut supervisor = Supervisor::new(Duration::from_secs(60), Interrupts::default());
         let launch = OpenfoamLaunch {
@@ -109,7 +109,7 @@ impl Run {
         }
     }
 
-    fn windows(&mut self, count: usize, span: f64) {
+    pub fn windows(&mut self, count: usize, span: f64) {
         let span = Ticks::from_seconds(span).unwrap();
         let bed = Bed {
             void_fraction: vec![1.0; self.cells],
@@ -141,7 +141,7 @@ fn closure(balance: &Balance) -> f64 {
     error.abs() / parts.into_iter().fold(f64::MIN_POSITIVE, f64::max)
 }
 
-fn rms(mesh: &Mesh, error: impl Fn(usize) -> f64) -> f64 {
+pub fn rms(mesh: &Mesh, error: impl Fn(usize) -> f64) -> f64 {
     let volume = mesh.cell_volume();
     let sum: f64 = (0..mesh.cells())
         .map(|cell| volume[cell] * error(cell).powi(2))
@@ -149,7 +149,7 @@ fn rms(mesh: &Mesh, error: impl Fn(usize) -> f64) -> f64 {
     (sum / volume.iter().sum::<f64>()).sqrt()
 }
 
-fn orders(errors: &[f64]) -> Vec<f64> {
+pub fn orders(errors: &[f64]) -> Vec<f64> {
     let pairs = errors.windows(2);
     pairs.map(|pair| (pair[0] / pair[1]).log2()).collect()
 }

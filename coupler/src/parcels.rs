@@ -24,6 +24,17 @@ pub struct ParcelMotion {
     pub collisions: ParcelCollisions,
     /// Friction under the stress of the solid; none where it is not given.
     pub friction: Option<ParcelFriction>,
+    /// Resistance in proportion to velocity; none where it is not given.
+    pub resistance: Option<ParcelResistance>,
+}
+
+/// A resistance −c m (v − v_wall) of each particle against a wall, wherever it is (docs/theory.md, NSP-2).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParcelResistance {
+    /// Rate c in 1/s, 0 or above.
+    pub rate: f64,
+    /// How the wall moves; v_wall is the velocity of a body that moves with it at the particle's place.
+    pub wall: WallMotion,
 }
 
 /// Coulomb's friction of the solid with itself and, by the friction of their impacts, with walls, under the stress of the solid

@@ -2,30 +2,14 @@
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
-use calcine_physics::points::linear;
 
 use crate::gas_chemistry::GasChemistry;
+pub use crate::gas_wall::{AxialTemperature, WallVelocity};
 use crate::momentum_model::MomentumModel;
 use crate::motion::Motion;
+pub use crate::schedule::Schedule;
 use crate::time::GasStorage;
 pub use crate::turbulence::{InletTurbulence, Turbulence};
-
-/// A value over process time: (time in s, value) entries with increasing times,
-/// at least one; linear in between, constant before the first and after the last.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Schedule(pub Vec<(f64, f64)>);
-
-impl Schedule {
-    /// A constant.
-    pub fn constant(value: f64) -> Self {
-        Self(vec![(0.0, value)])
-    }
-
-    /// The value at a process time in s: linear between entries, constant outside them.
-    pub fn at(&self, time: f64) -> f64 {
-        linear(&self.0, time)
-    }
-}
 
 /// The gas: mixture, start, boundary.
 #[derive(Clone, Debug)]
@@ -270,17 +254,6 @@ pub enum InletFlow {
     MassFlow(Schedule),
 }
 
-/// How the gas moves along a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WallVelocity {
-    /// It sticks.
-    NoSlip,
-    /// It slides freely.
-    Slip,
-    /// It sticks to a wall that slides in its own plane with this velocity in m/s.
-    Moving(Vec3),
-}
-
 /// Heat through a wall.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WallHeat {
@@ -288,6 +261,8 @@ pub enum WallHeat {
     Adiabatic,
     /// Fixed wall temperature in K, over process time in s.
     Temperature(Schedule),
+    /// Fixed wall temperature that changes along an axis.
+    Along(AxialTemperature),
     /// Heat flux into the gas in W/m² of wall, over process time in s.
     Flux(Schedule),
     /// Heat exchange with surroundings beyond the wall.

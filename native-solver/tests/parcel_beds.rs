@@ -47,6 +47,7 @@ pub fn motion(mesh: &Mesh, restitution: f64, friction: f64) -> ParcelMotion {
             seed: 1,
         },
         friction: None,
+        resistance: None,
     }
 }
 

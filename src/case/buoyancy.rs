@@ -76,6 +76,7 @@ pub(super) fn temperatures(case: &Case) -> (f64, f64) {
         if let GasPatch::Wall { heat, .. } = patch {
             match heat {
                 WallHeat::Temperature(temperature) => add(temperature),
+                WallHeat::Along(along) => along.stations.iter().for_each(|one| add(&one.1)),
                 WallHeat::Convective { ambient, .. } => add(ambient),
                 WallHeat::Adiabatic | WallHeat::Flux(_) => {}
             }

@@ -198,7 +198,7 @@ pub struct FreeMotion {
 }
 
 /// `[motion.parcels]`: how parcels move.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ParcelSpec {
     /// Courant number of a parcel at most.
     pub courant: f64,
@@ -212,6 +212,8 @@ pub struct ParcelSpec {
     pub collisions: ParcelCollisions,
     /// Friction under the stress.
     pub friction: Option<ParcelFriction>,
+    /// Rate in 1/s of the resistance against a wall, and its name.
+    pub resistance: Option<(f64, String)>,
 }
 
 /// Which clock the motion of particles belongs to (docs/theory.md, TSM-7).

@@ -39,6 +39,16 @@ pub enum ParcelWallError {
         /// Its material.
         other: String,
     },
+    /// A resistance against a wall that there is not.
+    #[error(
+        "`motion.parcels.resistance` is against the wall \"{wall}\", which is not one of [[walls]]; name one of them: {known}"
+    )]
+    Unknown {
+        /// The name.
+        wall: String,
+        /// Those that there are.
+        known: String,
+    },
     /// A motion that moves the wall away from the mesh.
     #[error(
         "wall `{wall}` is `moved` or `oscillating`, and the mesh in which parcels move stays; walls of parcels turn or move along \

@@ -2,13 +2,13 @@
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{Motion, Wall, WallMotion, WallShape};
-use calcine_coupler::parcels::{ParcelImpact, ParcelMotion, ParcelWall};
+use calcine_coupler::parcels::{ParcelImpact, ParcelMotion, ParcelResistance, ParcelWall};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_native::particles::dem::{distance_to_shape, distance_to_triangle};
 
 use super::contacts;
-use super::model::{Case, ContactSpec, ParcelSpec};
+use super::model::{Case, ContactSpec, ParcelSpec, belongs};
 use super::parcel_wall_error::ParcelWallError;
 use super::place_error::PlaceError;
 
@@ -64,7 +64,29 @@ fn motion(case: &Case, spec: &ParcelSpec, mesh: &Mesh) -> Result<Motion, ParcelW
         packing: spec.packing,
         collisions: spec.collisions,
         friction: spec.friction,
+        resistance: spec
+            .resistance
+            .as_ref()
+            .map(|(rate, wall)| resistance(case, *rate, wall))
+            .transpose()?,
     })))
+}
+
+/// The resistance of a rate in 1/s against the wall of a name.
+fn resistance(case: &Case, rate: f64, name: &str) -> Result<ParcelResistance, ParcelWallError> {
+    let mut walls = case.walls.iter();
+    let wall = walls.find(|wall| belongs(&wall.name, name));
+    let wall = wall.ok_or_else(|| {
+        let names: Vec<&str> = case.walls.iter().map(|wall| &*wall.name).collect();
+        ParcelWallError::Unknown {
+            wall: name.to_owned(),
+            known: names.join(", "),
+        }
+    })?;
+    Ok(ParcelResistance {
+        rate,
+        wall: wall.motion.clone(),
+    })
 }
 
 /// True where parcels rebound alike from both.

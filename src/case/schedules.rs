@@ -28,6 +28,11 @@ fn times(case: &Case) -> Vec<(String, Vec<f64>)> {
             GasPatch::Opening { pressure, .. } => add(key("opening.pressure"), of(pressure)),
             GasPatch::Wall { heat, .. } => match heat {
                 WallHeat::Temperature(one) => add(key("wall.heat.temperature"), of(one)),
+                WallHeat::Along(along) => {
+                    for (_, one) in &along.stations {
+                        add(key("wall.heat.along.stations"), of(one));
+                    }
+                }
                 WallHeat::Flux(one) => add(key("wall.heat.flux"), of(one)),
                 WallHeat::Convective {
                     coefficient,

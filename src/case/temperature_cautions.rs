@@ -125,6 +125,16 @@ fn of_gas(case: &Case) -> Vec<Stated> {
         [case.gas.temperature],
     )];
     for (name, patch) in &case.gas.patches {
+        if let GasPatch::Wall {
+            heat: WallHeat::Along(along),
+            ..
+        } = patch
+        {
+            let stations = along.stations.iter();
+            let values =
+                stations.flat_map(|(_, over_time)| over_time.0.iter().map(|entry| entry.1));
+            all.push(Stated::new(format!("gas.patch.{name}"), values));
+        }
         let schedule = match patch {
             GasPatch::Wall {
                 heat: WallHeat::Temperature(over_time),

@@ -74,6 +74,7 @@ shipped! {
     Hopper "hopper" "Beads that run out of a hole in a flat floor.";
     Chute "chute" "Beads that flow down a rough chute which repeats itself.";
     MovingBed "moving-bed" "Cold beads that sink through a shaft against hot air.";
+    WetDrum "wet-drum" "Wet wood chips that dry and char in a turning drum.";
     WoodDrying "wood-drying" "Wet wood chips that dry in hot air.";
     CalciningStone "calcining-stone" "A limestone resolved along its radius.";
     LimeBurning "lime-burning" "Limestone that is burnt to lime by hot gas.";

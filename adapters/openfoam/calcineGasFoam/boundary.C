@@ -55,6 +55,17 @@ Foam::calcine::boundary::boundary
         readTable(dict, "massFlow", d.massFlow);
         readTable(dict, "temperature", d.temperature);
         readTable(dict, "pressure", d.pressure);
+        if (dict.found("along"))
+        {
+            const dictionary& along = dict.subDict("along");
+            d.axis = along.get<vector>("axis");
+            d.positions = along.get<scalarList>("positions");
+            d.stations.setSize(d.positions.size());
+            forAll(d.positions, i)
+            {
+                d.stations.set(i, new schedule(along, "station" + Foam::name(i)));
+            }
+        }
         if (dict.found("composition"))
         {
             const dictionary& composition = dict.subDict("composition");
@@ -106,6 +117,33 @@ Foam::calcine::boundary::boundary
             passages_[patchi] = passage::given;
         }
     }
+}
+
+
+Foam::tmp<Foam::scalarField> Foam::calcine::boundary::driven::along
+(
+    const fvPatch& patch,
+    scalar time
+) const
+{
+    auto result = tmp<scalarField>::New(patch.size());
+    const vectorField& centres = patch.Cf();
+    const label last = positions.size() - 1;
+    forAll(centres, i)
+    {
+        const scalar x = centres[i] & axis;
+        label upper = 0;
+        while (upper <= last && positions[upper] < x)
+        {
+            ++upper;
+        }
+        const label lower = max(upper - 1, label(0));
+        upper = min(upper, last);
+        const scalar share = lower == upper
+          ? 0 : (x - positions[lower])/(positions[upper] - positions[lower]);
+        result.ref()[i] = (1 - share)*stations[lower].at(time) + share*stations[upper].at(time);
+    }
+    return result;
 }
 
 
@@ -182,6 +220,11 @@ void Foam::calcine::boundary::updateState
         if (d.temperature.valid() && !d.pressure.valid())
         {
             temperature.boundaryFieldRef()[d.patch] == d.temperature->at(time);
+        }
+        if (d.stations.size())
+        {
+            const fvPatch& patch = mesh_.boundary()[d.patch];
+            temperature.boundaryFieldRef()[d.patch] == d.along(patch, time);
         }
         if (d.pressure.valid())
         {

@@ -5,13 +5,13 @@ use std::fmt::Write;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
-    Convection, GasControls, GasPatch, GasSetup, InletFlow, InletScalars, PatchGas, Schedule,
-    TimeScheme, Turbulence, WallHeat, WallVelocity,
+    AxialTemperature, Convection, GasControls, GasPatch, GasSetup, InletFlow, InletScalars,
+    PatchGas, Schedule, TimeScheme, Turbulence, WallHeat, WallVelocity,
 };
 use calcine_wire::Catalogue;
 
 use super::decompose;
-use super::foam_file::{field, fixed, header, table, vector, zero_gradient};
+use super::foam_file::{field, fixed, header, table, turning, vector, zero_gradient};
 use super::species;
 use super::stock::StockSolver;
 
@@ -225,6 +225,7 @@ fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)
                 WallHeat::Temperature(temperature) => {
                     entries.push(("temperature", table(temperature)));
                 }
+                WallHeat::Along(along) => entries.push(("along", stations(along))),
                 WallHeat::Flux(flux) => entries.push(("heatFlux", table(flux))),
                 WallHeat::Convective {
                     coefficient,
@@ -237,6 +238,25 @@ fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)
             entries
         }
     }
+}
+
+/// Axis, coordinates and a table each of the stations of a wall's temperature.
+fn stations(along: &AxialTemperature) -> String {
+    let positions: Vec<String> = along
+        .stations
+        .iter()
+        .map(|(x, _)| format!("{x:e}"))
+        .collect();
+    let tables = along.stations.iter().enumerate();
+    let tables: Vec<String> = tables
+        .map(|(index, (_, over))| format!("station{index} {};", table(over)))
+        .collect();
+    format!(
+        "{{ axis {}; positions ({}); {} }}",
+        vector(along.axis),
+        positions.join(" "),
+        tables.join(" ")
+    )
 }
 
 /// Keys and tables of gas beyond a patch.
@@ -308,6 +328,10 @@ pub fn velocity(setup: &GasSetup) -> String {
             WallVelocity::NoSlip => "type            noSlip;".into(),
             WallVelocity::Slip => "type            slip;".into(),
             WallVelocity::Moving(velocity) => fixed(&vector(*velocity)),
+            WallVelocity::Rotating {
+                point,
+                angular_velocity,
+            } => turning(*point, *angular_velocity),
         },
     })
 }
@@ -328,6 +352,8 @@ pub fn temperature(setup: &GasSetup) -> String {
         // The solver adds heat fluxes and losses to its equation.
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Temperature(temperature) => first(temperature),
+            // The solver sets the faces one by one.
+            WallHeat::Along(along) => first(&along.stations[0].1),
             WallHeat::Adiabatic | WallHeat::Flux(_) | WallHeat::Convective { .. } => {
                 zero_gradient()
             }

@@ -56,3 +56,18 @@ pub(super) fn fixed(value: &str) -> String {
 pub(super) fn zero_gradient() -> String {
     "type            zeroGradient;".into()
 }
+
+/// OpenFOAM's condition of a wall that turns about an axis: ω × r without its part along the normal.
+pub fn turning(point: Vec3, angular_velocity: Vec3) -> String {
+    let speed = angular_velocity.norm();
+    let axis = if speed > 0.0 {
+        angular_velocity / speed
+    } else {
+        Vec3::z()
+    };
+    format!(
+        "type            rotatingWallVelocity;\n        origin          {};\n        axis            {};\n        omega           constant {speed:e};",
+        vector(point),
+        vector(axis)
+    )
+}

@@ -6,7 +6,7 @@ use calcine_coupler::setup::{
     GasPatch, GasSetup, InletFlow, InletScalars, Schedule, WallHeat, WallVelocity,
 };
 
-use super::foam_file::{field, fixed, header, vector, zero_gradient};
+use super::foam_file::{field, fixed, header, turning, vector, zero_gradient};
 
 /// Which program computes the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,9 +130,9 @@ pub fn refusal(solver: StockSolver, setup: &GasSetup, moving_clock: bool) -> Opt
             GasPatch::Wall { heat, .. } => match heat {
                 WallHeat::Adiabatic => Vec::new(),
                 WallHeat::Temperature(temperature) => vec![temperature],
-                WallHeat::Flux(_) | WallHeat::Convective { .. } => {
+                WallHeat::Along(_) | WallHeat::Flux(_) | WallHeat::Convective { .. } => {
                     return Some(format!(
-                        "the wall `{name}` may be adiabatic or have a temperature only"
+                        "the wall `{name}` may be adiabatic or have one temperature only"
                     ));
                 }
             },
@@ -250,6 +250,10 @@ pub fn velocity(setup: &GasSetup) -> String {
             WallVelocity::NoSlip => "type            noSlip;".into(),
             WallVelocity::Slip => "type            slip;".into(),
             WallVelocity::Moving(velocity) => fixed(&vector(*velocity)),
+            WallVelocity::Rotating {
+                point,
+                angular_velocity,
+            } => turning(*point, *angular_velocity),
         },
     })
 }

@@ -4,6 +4,7 @@
 //! A solver joins with a function that makes it from a setup; `gas::run` and `particles::run` say of each law whether
 //! it holds. Each law starts with a fresh solver. `calcine conform` runs them for any program.
 
+pub mod annulus;
 mod drag;
 pub mod gas;
 pub mod manufactured;

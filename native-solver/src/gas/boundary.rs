@@ -14,6 +14,8 @@ use super::error::NativeError;
 
 /// Slope of a wall's velocity against the wall that counts as round-off.
 const TANGENTIAL: f64 = 1e-9;
+/// Slope of the velocity of a wall that turns against its faces that flat faces of a round wall may have.
+const ROUND: f64 = 0.1;
 
 /// A patch and its condition.
 #[derive(Clone, Debug)]
@@ -23,7 +25,12 @@ struct Boundary {
     /// Area in m².
     area: f64,
     condition: GasPatch,
-    value: FaceCondition,
+    /// First face.
+    start: usize,
+    /// One for the whole patch, or one a face.
+    values: Vec<FaceCondition>,
+    /// Centre in m and unit normal of each face, of a wall whose condition differs from face to face; else empty.
+    faces: Vec<(Vec3, Vec3)>,
     /// Mass fractions of the gas that flows in; empty where none does, or for a single gas.
     composition: Vec<f64>,
 }
@@ -184,12 +191,8 @@ impl Boundaries {
             if joined {
                 continue;
             }
-            if let GasPatch::Wall {
-                velocity: WallVelocity::Moving(velocity),
-                ..
-            } = condition
-            {
-                check_tangential(mesh, &patch.name, patch.faces(), *velocity)?;
+            if let GasPatch::Wall { velocity, .. } = condition {
+                check_tangential(mesh, &patch.name, patch.faces(), velocity)?;
             }
             let index = boundaries.patches.len() as u32;
             boundaries.patch_of.extend(patch.faces().map(|_| index));
@@ -200,9 +203,12 @@ impl Boundaries {
                     .map(|face| mesh.face_area()[face].norm())
                     .sum(),
                 condition: condition.clone(),
-                value: FaceCondition::Wall {
-                    sticks: None,
-                    heat: HeatCondition::Adiabatic,
+                start: patch.start,
+                values: Vec::new(),
+                faces: if differs(condition) {
+                    patch.faces().map(|face| place(mesh, face)).collect()
+                } else {
+                    Vec::new()
                 },
                 composition: Vec::new(),
             });
@@ -247,7 +253,7 @@ impl Boundaries {
     /// The condition of a boundary face.
     #[inline]
     pub fn at(&self, face: usize) -> &FaceCondition {
-        &self.patches[self.patch_of[face - self.internal] as usize].value
+        self.patches[self.patch_of[face - self.internal] as usize].at(face)
     }
 
     /// True where a patch is a side of a wedge.
@@ -267,7 +273,7 @@ impl Boundaries {
     #[inline]
     pub fn composition(&self, face: usize) -> Option<&[f64]> {
         let boundary = &self.patches[self.patch_of[face - self.internal] as usize];
-        boundary.value.entering().map(|_| &*boundary.composition)
+        boundary.at(face).entering().map(|_| &*boundary.composition)
     }
 
     /// k in m²/s² and its dissipation in m²/s³ of the gas that flows in through a boundary face into a cell of
@@ -304,9 +310,18 @@ impl Boundary {
         BoundaryGas::at(model, gas.temperature.at(time), &self.composition)
     }
 
+    /// The condition of one of its faces.
+    #[inline]
+    fn at(&self, face: usize) -> &FaceCondition {
+        match &*self.values {
+            [whole] => whole,
+            each => &each[face - self.start],
+        }
+    }
+
     fn update(&mut self, setup: &GasSetup, time: f64) {
         let model = &setup.properties;
-        self.value = match &self.condition.clone() {
+        let value = match &self.condition.clone() {
             GasPatch::Inlet {
                 flow,
                 temperature,
@@ -356,28 +371,69 @@ impl Boundary {
                     heat: HeatCondition::Adiabatic,
                 }
             }
+            GasPatch::Wall { velocity, heat } if differs(&self.condition) => {
+                self.values = wall_of_faces(&self.faces, velocity, heat, time);
+                return;
+            }
             GasPatch::Wall { velocity, heat } => FaceCondition::Wall {
-                sticks: match velocity {
-                    WallVelocity::Slip => None,
-                    WallVelocity::NoSlip => Some(Vec3::zeros()),
-                    WallVelocity::Moving(velocity) => Some(*velocity),
-                },
-                heat: match heat {
-                    WallHeat::Adiabatic => HeatCondition::Adiabatic,
-                    WallHeat::Temperature(schedule) => {
-                        HeatCondition::Temperature(schedule.at(time))
-                    }
-                    WallHeat::Flux(schedule) => HeatCondition::Flux(schedule.at(time)),
-                    WallHeat::Convective {
-                        coefficient,
-                        ambient,
-                    } => HeatCondition::Convective {
-                        coefficient: coefficient.at(time),
-                        ambient: ambient.at(time),
-                    },
-                },
+                sticks: velocity.of_gas(Vec3::zeros(), Vec3::zeros()),
+                heat: whole_heat(heat, time),
             },
         };
+        self.values = vec![value];
+    }
+}
+
+/// True where the condition of a patch differs from face to face.
+fn differs(condition: &GasPatch) -> bool {
+    match condition {
+        GasPatch::Wall { velocity, heat } => {
+            matches!(velocity, WallVelocity::Rotating { .. }) || matches!(heat, WallHeat::Along(_))
+        }
+        _ => false,
+    }
+}
+
+/// Centre in m and unit normal of a face.
+fn place(mesh: &Mesh, face: usize) -> (Vec3, Vec3) {
+    (mesh.face_centre()[face], mesh.face_area()[face].normalize())
+}
+
+/// The condition of each face of a wall that turns, or has a temperature along an axis, at a process time in s.
+fn wall_of_faces(
+    faces: &[(Vec3, Vec3)],
+    velocity: &WallVelocity,
+    heat: &WallHeat,
+    time: f64,
+) -> Vec<FaceCondition> {
+    let profile = match heat {
+        WallHeat::Along(along) => Some((along, along.at(time))),
+        _ => None,
+    };
+    let one = |&(centre, normal): &(Vec3, Vec3)| FaceCondition::Wall {
+        sticks: velocity.of_gas(centre, normal),
+        heat: match &profile {
+            Some((along, profile)) => HeatCondition::Temperature(along.of(profile, centre)),
+            None => whole_heat(heat, time),
+        },
+    };
+    faces.iter().map(one).collect()
+}
+
+/// Heat through the whole of a wall at a process time in s.
+fn whole_heat(heat: &WallHeat, time: f64) -> HeatCondition {
+    match heat {
+        // One of a temperature along an axis is that of its faces.
+        WallHeat::Adiabatic | WallHeat::Along(_) => HeatCondition::Adiabatic,
+        WallHeat::Temperature(schedule) => HeatCondition::Temperature(schedule.at(time)),
+        WallHeat::Flux(schedule) => HeatCondition::Flux(schedule.at(time)),
+        WallHeat::Convective {
+            coefficient,
+            ambient,
+        } => HeatCondition::Convective {
+            coefficient: coefficient.at(time),
+            ambient: ambient.at(time),
+        },
     }
 }
 
@@ -386,22 +442,31 @@ fn of_schedule(composition: Option<&CompositionSchedule>, time: f64) -> Vec<f64>
     composition.map_or_else(Vec::new, |schedule| schedule.at(time))
 }
 
-/// A moving wall must slide in its own plane.
+/// A moving wall must slide in its own plane, and one that turns be round about its axis.
 fn check_tangential(
     mesh: &Mesh,
     name: &str,
     faces: Range<usize>,
-    velocity: Vec3,
+    velocity: &WallVelocity,
 ) -> Result<(), NativeError> {
+    let (slope, rule) = match velocity {
+        WallVelocity::Rotating { .. } => (
+            ROUND,
+            "at most a tenth of its speed: a wall turns within itself, as a drum or a disc about its axis",
+        ),
+        _ => (TANGENTIAL, "zero: a wall slides in its own plane"),
+    };
     for face in faces {
-        let through = velocity.dot(&mesh.face_area()[face].normalize());
-        if through.abs() > TANGENTIAL * velocity.norm() {
+        let (centre, normal) = place(mesh, face);
+        let moves = velocity.at(centre);
+        let through = moves.dot(&normal);
+        if through.abs() > slope * moves.norm() {
             return Err(NativeError::Value {
                 field: "the velocity through the moving wall",
                 place: format!("patch `{name}`, face {face}"),
                 value: through,
                 unit: "m/s",
-                rule: "zero: a wall slides in its own plane",
+                rule,
             });
         }
     }
@@ -455,6 +520,10 @@ fn check(name: &str, condition: &GasPatch) -> Result<(), NativeError> {
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Adiabatic => Ok(()),
             WallHeat::Temperature(schedule) => temperature(schedule),
+            WallHeat::Along(along) => {
+                let mut stations = along.stations.iter();
+                stations.try_for_each(|(_, schedule)| temperature(schedule))
+            }
             WallHeat::Flux(flux) => all(flux, "the heat flux", "W/m^2", "finite", f64::is_finite),
             WallHeat::Convective {
                 coefficient,

@@ -43,7 +43,7 @@ use rubbing::RubStep;
 use step::{FlyingParcel, fly};
 pub use tetrahedra::{Beyond, Tetrahedra};
 pub use track::WayEnd;
-use walls::WallFaces;
+use walls::{WallFaces, moving};
 
 use crate::particles::check;
 use crate::pushed_drag::{pushed_drag, takes};
@@ -150,7 +150,13 @@ impl NativeParcels {
                 Some(drag) => (drag.coefficient[row] / mass, Vec3::from(drag.gas[row])),
                 None => (0.0, Vec3::zeros()),
             };
+            let (resistance, wall) = match &self.motion.resistance {
+                Some(one) => (one.rate, moving(&one.wall, self.rows.position[row])),
+                None => (0.0, Vec3::zeros()),
+            };
             Flight {
+                resistance,
+                wall,
                 acceleration: push.force[row] / mass + self.motion.gravity,
                 rate,
                 gas,
@@ -167,6 +173,8 @@ impl NativeParcels {
             place: self.rows.place[row],
             population: self.rows.population[row],
             dragged: Vec3::zeros(),
+            resisted: Vec3::zeros(),
+            resistance: 0.0,
             yielding: 1.0,
             rebounded: Vec3::zeros(),
         };
@@ -207,6 +215,11 @@ impl NativeParcels {
             self.steps += 1;
             if supervisor.interrupts().count() >= 2 {
                 return Err(self.failure(FailureKind::Interrupted, "interrupted"));
+            }
+        }
+        if self.motion.resistance.is_some() {
+            for (parcel, mass) in parcels.iter().zip(&mass) {
+                support += *mass * parcel.resisted;
             }
         }
         Ok(support)

@@ -31,6 +31,10 @@ pub struct FlyingParcel {
     pub population: u32,
     /// What drag has added to its velocity since the window began, in m/s.
     pub dragged: Vec3,
+    /// What the resistance has, in m/s.
+    pub resisted: Vec3,
+    /// Share of the resistance in what it and drag take of a force of the step.
+    pub resistance: f64,
     /// Share φ₁ of what a force would add to its velocity in the step without drag.
     pub yielding: f64,
     /// What walls have added to its velocity in the step, in m/s.
@@ -55,6 +59,10 @@ impl FlyingParcel {
     fn fly(&mut self, tetrahedra: &Tetrahedra, walls: &WallFaces, flight: &Flight, time: f64) {
         self.rebounded = Vec3::zeros();
         self.yielding = flight.yielding(time);
+        self.resistance = match flight.resistance {
+            0.0 => 0.0,
+            rate => rate / (rate + flight.rate),
+        };
         let mut left = time;
         for impacts in 1.. {
             // The way is the chord of the flight, whose ends are exact; what meets a wall is cut there and goes on from it.
@@ -134,7 +142,10 @@ impl FlyingParcel {
 
     /// Takes up the velocity after a flight.
     fn accelerate(&mut self, flight: &Flight, time: f64, velocity: Vec3) {
-        self.dragged += velocity - self.velocity - flight.acceleration * time;
+        let gained = velocity - self.velocity - flight.acceleration * time;
+        let resisted = flight.resisted(gained, time);
+        self.dragged += gained - resisted;
+        self.resisted += resisted;
         self.velocity = velocity;
     }
 
@@ -142,7 +153,10 @@ impl FlyingParcel {
     pub fn pushed(&mut self, change: Vec3) -> Vec3 {
         let added = self.yielding * change;
         self.velocity += added;
-        self.dragged += added - change;
+        let taken = added - change;
+        let resisted = self.resistance * taken;
+        self.dragged += taken - resisted;
+        self.resisted += resisted;
         added
     }
 

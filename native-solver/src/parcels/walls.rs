@@ -75,15 +75,20 @@ impl WallFaces {
     /// The velocity of the wall of a boundary face at a place along itself, in m/s.
     pub fn velocity(&self, face: usize, place: Vec3, normal: Vec3) -> Vec3 {
         let wall = &self.walls[self.of_face[face - self.internal] as usize];
-        let velocity = match &wall.motion {
-            WallMotion::Translating(velocity) => *velocity,
-            WallMotion::Rotating {
-                point,
-                angular_velocity,
-            } => angular_velocity.cross(&(place - point)),
-            _ => Vec3::zeros(),
-        };
+        let velocity = moving(&wall.motion, place);
         velocity - velocity.dot(&normal) * normal
+    }
+}
+
+/// The velocity in m/s of a body that moves with a wall, at a place in m.
+pub fn moving(motion: &WallMotion, place: Vec3) -> Vec3 {
+    match motion {
+        WallMotion::Translating(velocity) => *velocity,
+        WallMotion::Rotating {
+            point,
+            angular_velocity,
+        } => angular_velocity.cross(&(place - point)),
+        _ => Vec3::zeros(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Keys of `gas`.
 
 use super::prelude::*;
+use super::walls::ROTATING;
 use crate::laws;
 
 #[rustfmt::skip]
@@ -142,16 +143,30 @@ const PATCH_OPENING: &[Key] = &[
 
 #[rustfmt::skip]
 const PATCH_WALL_VELOCITY: &[Key] = &[
-    key("moving", Vector(D::VELOCITY), Required, "Velocity of a wall that slides in its own plane; gas sticks to it.", "\"0.1 0 0 m/s\""),
+    key("moving", Vector(D::VELOCITY), OneOf, "Velocity of a wall that slides in its own plane; gas sticks to it. Either this or `rotating`.", "\"0.1 0 0 m/s\""),
+    key("rotating", Table(ROTATING), OneOf, "The wall turns within itself about an axis, as a drum or its ends do; gas sticks to it. Either this or `moving`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 15 rpm\" }"),
+];
+
+#[rustfmt::skip]
+const STATION: &[Key] = &[
+    key("at", Number(D::LENGTH, Any), Required, "Coordinate along the axis, measured from the origin.", "\"200 mm\""),
+    key("temperature", Schedule(D::TEMPERATURE, Positive), Required, "Temperature of the wall there.", "[[\"0 s\", \"300 K\"], [\"10 min\", \"600 K\"]]"),
+];
+
+#[rustfmt::skip]
+const ALONG: &[Key] = &[
+    key("axis", Vector(D::NONE), Required, "Direction of the axis; of any length.", "\"0 0 1\""),
+    key("stations", Tables(STATION), Required, "Places along the axis, in ascending order, two at least: the temperature is linear between them and constant beyond the first and the last.", "[{ at = \"0 mm\", temperature = \"300 K\" }, { at = \"200 mm\", temperature = \"600 K\" }]"),
 ];
 
 #[rustfmt::skip]
 const PATCH_WALL_HEAT: &[Key] = &[
-    key("temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature of the wall. One of `temperature`, `flux`, `coefficient`, `body`.", "\"350 K\""),
-    key("flux", Schedule(D::HEAT_FLUX, Any), OneOf, "Heat flux into the gas per area of wall. One of `temperature`, `flux`, `coefficient`, `body`.", "\"1 kW/m^2\""),
-    key("coefficient", Schedule(D::HEAT_TRANSFER, NotNegative), OneOf, "Overall coefficient between the inner face of the wall and surroundings of `ambient`. One of `temperature`, `flux`, `coefficient`, `body`.", "\"10 W/m^2/K\""),
+    key("temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature of the wall. One of `temperature`, `along`, `flux`, `coefficient`, `body`.", "\"350 K\""),
+    key("along", Table(ALONG), OneOf, "Temperature of the wall along an axis, and over time. One of `temperature`, `along`, `flux`, `coefficient`, `body`.", "{ axis = \"0 0 1\", stations = [{ at = \"0 mm\", temperature = \"300 K\" }, { at = \"200 mm\", temperature = \"600 K\" }] }"),
+    key("flux", Schedule(D::HEAT_FLUX, Any), OneOf, "Heat flux into the gas per area of wall. One of `temperature`, `along`, `flux`, `coefficient`, `body`.", "\"1 kW/m^2\""),
+    key("coefficient", Schedule(D::HEAT_TRANSFER, NotNegative), OneOf, "Overall coefficient between the inner face of the wall and surroundings of `ambient`. One of `temperature`, `along`, `flux`, `coefficient`, `body`.", "\"10 W/m^2/K\""),
     key("ambient", Schedule(D::TEMPERATURE, Positive), With("coefficient"), "Temperature of the surroundings.", "\"300 K\""),
-    key("body", Text, OneOf, "One of `bodies`, which stores the heat that the wall takes from the gas. One of `temperature`, `flux`, `coefficient`, `body`.", "\"crucible\""),
+    key("body", Text, OneOf, "One of `bodies`, which stores the heat that the wall takes from the gas. One of `temperature`, `along`, `flux`, `coefficient`, `body`.", "\"crucible\""),
     key("film", Number(D::HEAT_TRANSFER, Positive), Without("gas conducts up to the surface; with `body`"), "Coefficient of a film between the surface of the body and the gas, beside the gas of half a cell.", "\"50 W/m^2/K\""),
 ];
 

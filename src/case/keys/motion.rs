@@ -24,6 +24,13 @@ const PARCELS: &[Key] = &[
     key("isotropy", Truth, Default("false"), "Whether collisions draw velocities anew, so that they become isotropic.", "true"),
     key("seed", Whole(0, MOST), Without("required with isotropy"), "Equal seeds give equal draws, bit for bit.", "1"),
     key("friction", Table(PARCEL_FRICTION), Without("only parcels that meet a wall rub"), "Coulomb's friction under the stress of the solid: of the bed with itself, and with the walls by `friction` of [[contacts]] ([NSP-1](../theory.md#NSP-1)). With a packing only.", "{ bed = 0.5 }"),
+    key("resistance", Table(PARCEL_RESISTANCE), Without("none"), "A force -c m (v - v_wall) on each particle, wherever it is: what holds back particles that are no spheres ([NSP-2](../theory.md#NSP-2)). Its rate is a fit to a measured residence time.", "{ rate = \"0.2 1/s\", wall = \"drum\" }"),
+];
+
+#[rustfmt::skip]
+const PARCEL_RESISTANCE: &[Key] = &[
+    key("rate", Number(D::ANGULAR_VELOCITY, NotNegative), Required, "Its rate c.", "\"0.2 1/s\""),
+    key("wall", Text, Required, "One of [[walls]], whose motion v_wall is that of: of one that turns, as a body that turns with it.", "\"drum\""),
 ];
 
 const PARCEL_FRICTION: &[Key] = &[

@@ -24,7 +24,7 @@ const CONE: &[Key] = &[
 ];
 
 #[rustfmt::skip]
-const ROTATING: &[Key] = &[
+pub(super) const ROTATING: &[Key] = &[
     key("point", Vector(D::LENGTH), Required, "A point of the axis.", "\"0 0 0 mm\""),
     key("angular_velocity", Vector(D::ANGULAR_VELOCITY), Required, "Angular velocity along the axis.", "\"0 0 3 rad/s\""),
 ];

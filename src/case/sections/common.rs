@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::physics::Vec3;
+
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
 
@@ -50,4 +52,22 @@ pub(super) fn name_in_results<'a>(table: &TableReader<'a>) -> Option<&'a str> {
         table.fail("name", rule, help);
     }
     Some(name)
+}
+
+/// A direction, made one long.
+pub(super) fn direction(table: &TableReader<'_>, key: &str) -> Option<Vec3> {
+    let vector = Vec3::from(table.vector(key)?);
+    if vector.norm() == 0.0 {
+        table.fail(key, "has no length", "write a direction such as \"0 0 1\"");
+        return None;
+    }
+    Some(vector.normalize())
+}
+
+/// A point of the axis in m and the angular velocity in rad/s, from the keys of `rotating`.
+pub(super) fn turning(table: &TableReader<'_>) -> Option<(Vec3, Vec3)> {
+    let point = table.vector("point");
+    let speed = table.vector("angular_velocity");
+    table.finish();
+    Some((point?.into(), speed?.into()))
 }

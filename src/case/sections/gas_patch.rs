@@ -5,14 +5,16 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{
-    CompositionSchedule, GasPatch, InletFlow, PatchGas, WallHeat, WallVelocity,
+    AxialTemperature, CompositionSchedule, GasPatch, InletFlow, PatchGas, Schedule, WallHeat,
+    WallVelocity,
 };
 
-use super::common::patches;
+use super::common::{direction, patches, turning};
 use super::composition::{no_species, of_gas};
 use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
+use crate::case::units::shown;
 use crate::case::words::Adiabatic;
 
 /// Conditions that name no other patch.
@@ -286,15 +288,27 @@ fn wall(table: &TableReader<'_>) -> Option<GasPatch> {
     })
 }
 
-/// `"no-slip"`, `"slip"`, or `{ moving = "1 0 0 m/s" }`.
+/// `"no-slip"`, `"slip"`, `{ moving = "1 0 0 m/s" }`, or `{ rotating = { point = …, angular_velocity = … } }`.
 fn wall_velocity(table: &TableReader<'_>) -> Option<WallVelocity> {
     if !table.is_table("velocity") {
         return table.choice("velocity");
     }
     let inner = table.table("velocity")?;
-    let velocity = inner.vector("moving");
+    let made = match inner.exactly_one() {
+        Some("moving") => inner
+            .vector("moving")
+            .map(|velocity| WallVelocity::Moving(velocity.into())),
+        Some(_) => inner
+            .table("rotating")
+            .and_then(|rotating| turning(&rotating))
+            .map(|(point, angular_velocity)| WallVelocity::Rotating {
+                point,
+                angular_velocity,
+            }),
+        None => None,
+    };
     inner.finish();
-    velocity.map(|v| WallVelocity::Moving(Vec3::from(v)))
+    made
 }
 
 /// A patch that is the surface of a body that stores heat.
@@ -328,20 +342,21 @@ fn surface(name: &str, reader: &TableReader<'_>) -> Option<BodySurface> {
     })
 }
 
-/// `{ temperature = … }`, `{ flux = … }`, `{ coefficient = …, ambient = … }`, or `{ body = … }`.
+/// `{ temperature = … }`, `{ along = … }`, `{ flux = … }`, `{ coefficient = …, ambient = … }`, or `{ body = … }`.
 fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
-    let kinds = ["temperature", "flux", "coefficient", "body"];
+    let kinds = ["temperature", "along", "flux", "coefficient", "body"];
     let mut given = kinds.iter().copied().filter(|kind| table.has(kind));
     let (kind, more) = (given.next(), given.next());
     let (Some(kind), None) = (kind, more) else {
         table.fail_whole(
-            "needs exactly one of temperature, flux, body, and coefficient with ambient",
+            "needs exactly one of temperature, along, flux, body, and coefficient with ambient",
             "for example { coefficient = \"10 W/m^2/K\", ambient = \"300 K\" }",
         );
         return None;
     };
     match kind {
         "temperature" => table.schedule(kind).map(WallHeat::Temperature),
+        "along" => along(&table.table(kind)?).map(WallHeat::Along),
         "flux" => table.schedule(kind).map(WallHeat::Flux),
         // What the body gives comes as exchange with the cells at the wall.
         "body" => {
@@ -359,4 +374,38 @@ fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
             })
         }
     }
+}
+
+/// `{ axis = …, stations = [{ at = …, temperature = … }, …] }`.
+fn along(table: &TableReader<'_>) -> Option<AxialTemperature> {
+    let axis = direction(table, "axis");
+    let list = table.tables("stations");
+    let station = |one: &TableReader<'_>| {
+        let (at, temperature) = (one.number("at"), one.schedule("temperature"));
+        one.finish();
+        Some((at?, temperature?))
+    };
+    let stations: Vec<(f64, Schedule)> = list.iter().filter_map(station).collect();
+    table.finish();
+    if stations.len() < list.len() {
+        return None;
+    }
+    if stations.len() < 2 {
+        let rule = format!("has {} of at least two stations", stations.len());
+        let help = "state two or more, for example [{ at = \"0 mm\", temperature = \"300 K\" }, { at = \"200 mm\", temperature = \"600 K\" }]; \
+                    for one temperature write `temperature`";
+        table.fail("stations", rule, help);
+        return None;
+    }
+    let falls = stations.windows(2).position(|pair| pair[1].0 <= pair[0].0);
+    if let Some(index) = falls {
+        let [before, after] = [stations[index].0, stations[index + 1].0];
+        let rule = format!("goes from {} m to {} m", shown(before), shown(after));
+        table.fail("stations", rule, "sort the stations by `at`, each once");
+        return None;
+    }
+    Some(AxialTemperature {
+        axis: axis?,
+        stations,
+    })
 }

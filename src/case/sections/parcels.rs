@@ -37,6 +37,7 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
     let isotropy = table.truth("isotropy");
     let seed = table.whole("seed");
     let friction = friction(&table);
+    let resistance = resistance(&table);
     table.finish();
     let (scheme, damping, isotropy) = (scheme?, damping?, isotropy?);
     let collide = damping || isotropy || scheme == PackingScheme::Explicit;
@@ -86,6 +87,7 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
             seed: seed.unwrap_or(0),
         },
         friction,
+        resistance,
     })
 }
 
@@ -99,6 +101,15 @@ fn friction(parcels: &TableReader<'_>) -> Option<ParcelFriction> {
         bed: bed?,
         slip: slip?,
     })
+}
+
+/// `motion.parcels.resistance`.
+fn resistance(parcels: &TableReader<'_>) -> Option<(f64, String)> {
+    let table = parcels.table("resistance")?;
+    let rate = table.number("rate");
+    let wall = table.text("wall").map(str::to_owned);
+    table.finish();
+    Some((rate?, wall?))
 }
 
 /// Checks that parcels go with the rest of the case.

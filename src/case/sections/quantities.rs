@@ -6,9 +6,9 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
 use super::bodies::of_name;
+use super::common::direction;
 use super::common::name_in_results;
 use super::common::patches;
-use super::walls::direction;
 use super::zone::zone as zone_from;
 use crate::case::model::{
     Expect, GasPlace, MaterialSpec, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population,

@@ -11,7 +11,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
 use super::bodies::of_name;
-use super::common::existing;
+use super::common::{direction, existing, turning};
 use super::heat;
 use super::particles::material_of;
 use crate::case::meshing::{self, MeshingError};
@@ -156,16 +156,6 @@ fn shapes(
         }
         _ => of_mesh(table, mesh),
     }
-}
-
-/// A direction, made one long.
-pub(super) fn direction(table: &TableReader<'_>, key: &str) -> Option<Vec3> {
-    let vector = Vec3::from(table.vector(key)?);
-    if vector.norm() == 0.0 {
-        table.fail(key, "has no length", "write a direction such as \"0 0 1\"");
-        return None;
-    }
-    Some(vector.normalize())
 }
 
 fn plane(table: &TableReader<'_>) -> Option<WallShape> {
@@ -330,12 +320,10 @@ fn part_of(mesh: &Mesh, patch: &Patch) -> (String, String, WallShape) {
 fn motion(table: &TableReader<'_>) -> WallMotion {
     let translating = table.vector("velocity").map(Vec3::from);
     let rotating = table.table("rotating").and_then(|rotating| {
-        let point = rotating.vector("point");
-        let speed = rotating.vector("angular_velocity");
-        rotating.finish();
+        let (point, angular_velocity) = turning(&rotating)?;
         Some(WallMotion::Rotating {
-            point: point?.into(),
-            angular_velocity: speed?.into(),
+            point,
+            angular_velocity,
         })
     });
     let moved = table.table("moved").and_then(|moved| {

@@ -45,7 +45,9 @@ pub fn water_activity(moisture: f64, temperature: f64) -> f64 {
         } else {
             0.5 * (low + high)
         };
-        if (next - humidity).abs() <= 4.0 * f64::EPSILON * humidity {
+        // Beyond the round-off of M steps only wander.
+        let settled = (next - humidity).abs() <= 4.0 * f64::EPSILON * humidity;
+        if settled || off.abs() <= 4.0 * f64::EPSILON * moisture {
             return next;
         }
         humidity = next;
