@@ -41,6 +41,8 @@ const ONLY_PARSED: &[(&str, &str)] = &[
     ("--pairings", "takes OpenFOAM; run by the tests of pairings"),
     ("mpirun", "takes several machines"),
     ("#!/bin/bash", "a queue's script; run by the tests of ranks"),
+    ("sbatch --array", "takes SLURM; run by the validation slurm"),
+    ("--gather", "takes what a queue has run; so does the same"),
     ("blockMesh", "takes OpenFOAM"),
     ("paraview", "takes a screen"),
     ("perf record", "takes a kernel that counts events"),

@@ -1,6 +1,6 @@
 //! Runs of one case with several settings, each a process of its own, so many at once.
 
-use std::io::Read;
+use std::io::{ErrorKind, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::{self, JoinHandle};
@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use calcine_coupler::supervisor::Interrupts;
 use rustix::process::{Pid, Signal, kill_process};
+use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 use super::signals::SignalThread;
 use crate::exit;
-use crate::results::SUMMARY;
+use crate::results::{ResultsError, SUMMARY, files};
 use crate::simulation::begun_before;
 
 /// How often runs are looked at.
@@ -27,16 +28,63 @@ pub(super) struct Job {
     pub(super) folder: PathBuf,
 }
 
+/// Folder of what runs that failed said, beside their folders.
+const FAILED: &str = "failed";
+
+impl Job {
+    /// The file that says how it failed.
+    fn record(&self) -> Option<PathBuf> {
+        let name = self.folder.file_name()?.to_str()?;
+        let folder = self.folder.parent()?.join(FAILED);
+        Some(folder.join(format!("{name}.json")))
+    }
+
+    /// How it failed, as that was kept.
+    pub(super) fn kept_failure(&self) -> Option<JobEnd> {
+        let text = std::fs::read_to_string(self.record()?).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
+    /// Keeps how it failed.
+    fn keep(&self, end: &JobEnd) -> Result<(), ResultsError> {
+        let Some(path) = self.record() else {
+            return Ok(());
+        };
+        path.parent().map_or(Ok(()), files::directory)?;
+        files::replace_json(&path, end)
+    }
+
+    /// Forgets how it failed before.
+    fn forget(&self) {
+        if let Some(path) = self.record() {
+            // Of most there is none.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
 /// How a run ended.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct JobEnd {
     /// Exit code.
     pub(super) code: u8,
-    /// What it wrote to standard error, where that was not shown at once.
+    /// What it wrote to standard error; nothing where that is a terminal with a progress bar.
     pub(super) told: String,
+    /// True where that was shown at once.
+    #[serde(skip)]
+    pub(super) shown: bool,
 }
 
 impl JobEnd {
+    /// Of a run whose results say that it came to its end.
+    pub(super) fn complete(code: u8) -> Self {
+        Self {
+            code,
+            told: String::new(),
+            shown: true,
+        }
+    }
+
     /// True where it came to the end of its case.
     pub(super) fn is_complete(&self) -> bool {
         [exit::OK, exit::OUTSIDE_BANDS].contains(&self.code)
@@ -61,6 +109,7 @@ struct Running {
     place: usize,
     child: Child,
     told: Option<JoinHandle<String>>,
+    shown: bool,
 }
 
 impl Jobs<'_> {
@@ -100,8 +149,13 @@ impl Jobs<'_> {
                     told: one
                         .told
                         .map_or(String::new(), |told| told.join().unwrap_or_default()),
+                    shown: one.shown,
                 };
                 if end.code != exit::CHECKPOINTED {
+                    if !end.is_complete() {
+                        let kept = jobs[one.place].keep(&end);
+                        kept.map_err(|error| Failure::told(exit::OTHER, &error))?;
+                    }
                     ended(one.place, &end)?;
                 }
                 ends[one.place] = Some(end);
@@ -140,8 +194,11 @@ impl Jobs<'_> {
         if begun_before(&job.folder) || job.folder.join(SUMMARY).exists() {
             command.arg("--resume");
         }
+        job.forget();
         command.stdin(Stdio::null()).stdout(Stdio::null());
-        command.stderr(if alone {
+        // A progress bar is drawn on a terminal only.
+        let bar = alone && !self.quiet && std::io::stderr().is_terminal();
+        command.stderr(if bar {
             Stdio::inherit()
         } else {
             Stdio::piped()
@@ -149,16 +206,35 @@ impl Jobs<'_> {
         // In a group of its own: Ctrl-C comes to it by way of this process, once.
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().map_err(|cause| unheard(&cause))?;
-        let told = child.stderr.take().map(|mut stderr| {
-            thread::spawn(move || {
-                let mut text = Vec::new();
-                // What could be read is what there is to tell.
-                let _ = stderr.read_to_end(&mut text);
-                String::from_utf8_lossy(&text).into_owned()
-            })
-        });
-        Ok(Running { place, child, told })
+        let stderr = child.stderr.take();
+        let told = stderr.map(|stderr| thread::spawn(move || listen(stderr, alone)));
+        Ok(Running {
+            place,
+            child,
+            told,
+            shown: alone,
+        })
     }
+}
+
+/// All that a run says; shown at once where it is the only one.
+fn listen(mut from: impl Read, show: bool) -> String {
+    let (mut text, mut part) = (Vec::new(), [0; 4096]);
+    // What could be read is what there is to tell.
+    loop {
+        let count = match from.read(&mut part) {
+            Ok(0) => break,
+            Ok(count) => count,
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(_) => break,
+        };
+        text.extend_from_slice(&part[..count]);
+        if show {
+            // Standard error may be lost.
+            let _ = std::io::stderr().write_all(&part[..count]);
+        }
+    }
+    String::from_utf8_lossy(&text).into_owned()
 }
 
 /// Has a run leave a checkpoint.

@@ -24,6 +24,7 @@ mod schema;
 mod shell;
 mod signals;
 mod sweep;
+mod sweep_axes;
 mod sweep_table;
 mod tune;
 mod tuning_line;

@@ -14,14 +14,16 @@ use super::shell::word;
 use super::signals::SignalThread;
 use super::sweep_table::SweepTable;
 use super::tuning_line::Tuning;
-use super::{check, compare, run, sweep};
+use super::{check, compare, run, sweep, sweep_axes};
 use crate::case::plant::{PlantCase, read_plant};
 use crate::exit;
 use crate::plant::{
     PlantEnding, PlantRunError, PlantStart, PlantSummary, plant_check, plant_closing, run_plant,
     write_plant_report,
 };
+use crate::report::overview::SweptResult;
 use crate::results::Verdict;
+use crate::results::summary::QuantityResult;
 
 impl From<PlantRunError> for Failure {
     fn from(error: PlantRunError) -> Self {
@@ -342,24 +344,53 @@ pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
         folder.push("-sweep");
         folder.into()
     });
-    let (names, combinations) = sweep::combinations(&arguments.set)?;
+    let (names, combinations) = sweep_axes::combinations(&arguments.set)?;
+    let jobs = sweep_axes::jobs(&out, combinations);
     // Every case is read before the first one runs.
-    for settings in &combinations {
-        read(&arguments.case, settings)?;
+    for job in arguments.chosen(&jobs)? {
+        read(&arguments.case, &job.settings)?;
     }
     if let Some(path) = &arguments.table {
         sweep::table_is_free(path)?;
     }
-    let jobs = sweep::jobs(&out, combinations);
     sweep::own_table(&out, names.iter().map(String::as_str))?;
-    let options = Vec::new();
-    let table = |points: &[sweep::Point<'_>]| sweep_table(&names, points);
-    let (ends, table) = arguments.follow(&jobs, (&out, options), table)?;
-    // Written before anything is printed: standard output may be lost.
-    let written = arguments.write_table(&table);
-    say(table.markdown())?;
-    written?;
-    Ok(sweep::exit_code(&ends))
+    let kind = sweep::Kind {
+        name: &base.name,
+        title: &base.title,
+        result: &|folder| {
+            let summary = PlantSummary::read(folder).ok();
+            summary.filter(PlantSummary::is_complete).map(swept)
+        },
+        table: &|points| sweep_table(&names, points),
+        report: write_plant_report,
+    };
+    arguments.follow(&jobs, (&out, Vec::new()), &kind)
+}
+
+/// What came out of a run of a sweep.
+fn swept(summary: PlantSummary) -> SweptResult {
+    let mut quantities = summary.quantities;
+    if let Some(mode) = &summary.stability {
+        let of = |value: Option<f64>, unit: &str| QuantityResult {
+            value,
+            unit: unit.into(),
+            at_s: None,
+            band: None,
+            expected_at_s: None,
+            verdict: Verdict::None,
+        };
+        quantities.insert(
+            "growth_rate".into(),
+            of(Some(mode.growth_rate_per_s), "1/s"),
+        );
+        quantities.insert("period".into(), of(mode.period_s, "s"));
+    }
+    SweptResult {
+        verdict: summary.verdict,
+        warnings: 0,
+        quantities,
+        wall_time_s: summary.wall_time_s,
+    }
 }
 
 /// The table of a sweep: the settings, the wall time, the quantities, and what the plant does.
@@ -370,7 +401,7 @@ fn sweep_table(names: &[String], points: &[sweep::Point<'_>]) -> Result<SweepTab
     };
     let mut verdicts = Vec::new();
     for point in points {
-        let mut row = sweep::values(&point.job.settings);
+        let mut row = sweep_axes::values(&point.job.settings);
         if point.end.is_complete() {
             let summary = PlantSummary::read(&point.job.folder);
             let summary = summary.map_err(|error| Failure::told(exit::OTHER, &error))?;

@@ -1,6 +1,6 @@
 //! `calcine sweep CASE --set key=a,b,c`.
 
-use std::collections::BTreeSet;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,12 +9,17 @@ use super::console::{printed, say};
 use super::failure::Failure;
 use super::inputs::{own_or_new, read_case, results_folder};
 use super::jobs::{Job, JobEnd, Jobs};
+use super::sweep_axes::{axes, combine, jobs, keys, values};
 use super::sweep_table::{SweepTable, TABLE};
 use crate::assembly::{GasBackend, ParticleBackend};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;
+use crate::report;
+use crate::report::overview::{OVERVIEW, Overview, SweptEnd, SweptResult, SweptRun, own_overview};
+use crate::results::files::{REPORT, directory};
 use crate::results::read::Series;
-use crate::results::{CaseIdentity, ResultsError, SUMMARY, Summary, Verdict, same_case};
+use crate::results::{CaseIdentity, ResultsError, SUMMARY, Summary, same_case};
+use crate::simulation::{self, OWN_LOG};
 
 /// Runs a case once for each combination of values and prints one table.
 ///
@@ -47,6 +52,13 @@ pub(super) struct Arguments {
     /// Runs at once, each with its share of the cores.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: u16,
+    /// Runs the K-th combination alone, the first being 1, as one task of a queue's array. Values of the last `--set` change
+    /// fastest.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    only: Option<u32>,
+    /// Runs nothing: makes the table and the page of the runs that have ended.
+    #[arg(long, conflicts_with_all = ["only", "jobs"])]
+    gather: bool,
     /// Also writes the table to this file, as Markdown.
     #[arg(long, value_name = "FILE")]
     pub(super) table: Option<PathBuf>,
@@ -74,37 +86,6 @@ impl Arguments {
     }
 }
 
-/// The keys that `--set KEY=A,B,C` names, and every combination of their values as settings.
-pub(super) fn combinations(set: &[String]) -> Result<(Vec<String>, Vec<Vec<String>>), Failure> {
-    let axes = axes(set)?;
-    Ok((keys(&axes).map(str::to_owned).collect(), combine(&axes)))
-}
-
-/// The values of each key that is swept, as settings.
-fn axes(set: &[String]) -> Result<Vec<Vec<String>>, Failure> {
-    let axes: Vec<Vec<String>> = set
-        .iter()
-        .map(|text| axis(text))
-        .collect::<Result<_, _>>()?;
-    let mut seen = BTreeSet::new();
-    let twice = keys(&axes).find(|key| !seen.insert(*key));
-    match twice.map(str::to_owned) {
-        None => Ok(axes),
-        Some(key) => {
-            let message = format!(
-                "`{key}` stands in two `--set`: write all of its values in one, separated by commas"
-            );
-            Err(Failure::new(exit::CASE, message))
-        }
-    }
-}
-
-/// The keys that are swept.
-fn keys(axes: &[Vec<String>]) -> impl Iterator<Item = &str> {
-    axes.iter()
-        .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key))
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let axes = axes(&arguments.set)?;
     let reference = arguments.reference.as_deref();
@@ -126,7 +107,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     if let Some(path) = &arguments.table {
         table_is_free(path)?;
     }
-    for job in &jobs {
+    for job in arguments.chosen(&jobs)? {
         let case = read_case(&arguments.case, &job.settings)?;
         if job.folder.join(SUMMARY).exists() {
             let kept = Summary::read(&job.folder);
@@ -147,13 +128,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         let threads = (cores / usize::from(arguments.jobs)).max(1);
         options.extend(["--threads".to_owned(), threads.to_string()]);
     }
-    let table = |points: &[Point]| table(points, &axes, reference, arguments.span);
-    let (ends, table) = arguments.follow(&jobs, (&out, options), table)?;
-    // Written before anything is printed: standard output may be lost.
-    let written = arguments.write_table(&table);
-    say(table.markdown())?;
-    written?;
-    Ok(exit_code(&ends))
+    let kind = Kind {
+        name: &base.name,
+        title: &base.title,
+        result: &|folder| simulation::finished(folder).map(|summary| result(&summary)),
+        table: &|points| table(points, &axes, reference, arguments.span),
+        report: report::write,
+    };
+    arguments.follow(&jobs, (&out, options), &kind)
+}
+
+/// What a sweep asks of the kind of its case.
+pub(super) struct Kind<'a> {
+    /// Name of the case.
+    pub(super) name: &'a str,
+    /// Its title.
+    pub(super) title: &'a str,
+    /// What came out of a run, where it is complete.
+    pub(super) result: &'a dyn Fn(&Path) -> Option<SweptResult>,
+    /// The table of the runs that have ended.
+    pub(super) table: &'a dyn Fn(&[Point<'_>]) -> Result<SweepTable, Failure>,
+    /// Writes the report of a run.
+    pub(super) report: fn(&Path) -> Result<PathBuf, ResultsError>,
 }
 
 /// One run of the sweep that has ended.
@@ -165,38 +161,63 @@ pub(super) struct Point<'a> {
 }
 
 impl Arguments {
-    /// Follows all runs, and keeps the table of those that have ended in the folder of the sweep.
+    /// The runs that this command is to make.
+    pub(super) fn chosen<'j>(&self, jobs: &'j [Job]) -> Result<&'j [Job], Failure> {
+        let Some(number) = self.only else {
+            return Ok(jobs);
+        };
+        let place = number as usize - 1;
+        jobs.get(place..=place).ok_or_else(|| {
+            let message = format!(
+                "`--only {number}`: there are {} combinations, numbered from 1",
+                jobs.len()
+            );
+            Failure::new(exit::CASE, message)
+        })
+    }
+
+    /// Follows the runs, and keeps the table and the page of those that have ended in the folder of the sweep. Gives the exit code.
     pub(super) fn follow(
         &self,
         jobs: &[Job],
         (out, options): (&Path, Vec<String>),
-        table: impl Fn(&[Point<'_>]) -> Result<SweepTable, Failure>,
-    ) -> Result<(Vec<JobEnd>, SweepTable), Failure> {
+        kind: &Kind<'_>,
+    ) -> Result<u8, Failure> {
         let runs = Jobs {
             case: &self.case,
             options,
             at_once: self.jobs.into(),
             quiet: self.quiet,
         };
-        let mut ended: Vec<Option<JobEnd>> = vec![None; jobs.len()];
-        let so_far = |ended: &[Option<JobEnd>]| {
-            let pairs = jobs.iter().zip(ended);
-            let points = pairs.filter_map(|(job, end)| {
-                Some(Point {
-                    job,
-                    end: end.as_ref()?,
-                })
-            });
-            table(&points.collect::<Vec<_>>())
-        };
-        let ends = runs.follow(jobs, |place, end| {
-            let settings = jobs[place].settings.join("  ");
-            say(format_args!("{settings}  {}", ending(end.code)))?;
-            eprint!("{}", end.told);
-            ended[place] = Some(end.clone());
-            so_far(&ended)?.write(out)
-        })?;
-        Ok((ends, so_far(&ended)?))
+        let sweep = Sweep { jobs, out, kind };
+        directory(out).map_err(|error| Failure::told(exit::OTHER, &error))?;
+        let mut gathered = sweep.gather()?;
+        let chosen = self.chosen(jobs)?;
+        if !self.gather {
+            let ends = runs.follow(chosen, |place, end| {
+                let settings = chosen[place].settings.join("  ");
+                say(format_args!("{settings}  {}", ending(end.code)))?;
+                if !end.shown {
+                    eprint!("{}", end.told);
+                }
+                gathered = sweep.gather()?;
+                Ok(())
+            })?;
+            if self.only.is_some() {
+                return Ok(exit_code(ends.iter()));
+            }
+        }
+        let (ends, table) = gathered;
+        // Written before anything is printed: standard output may be lost.
+        let written = self.write_table(&table);
+        say(table.markdown())?;
+        written?;
+        if ends.iter().any(Option::is_none) {
+            let ended = ends.iter().flatten().count();
+            let message = format!("{ended} of {} runs have ended", jobs.len());
+            return Err(Failure::new(exit::CHECKPOINTED, message));
+        }
+        Ok(exit_code(ends.iter().flatten()))
     }
 
     /// Writes the table to the file that was asked for.
@@ -209,10 +230,86 @@ impl Arguments {
     }
 }
 
+/// The runs of a sweep and where they are.
+struct Sweep<'a> {
+    jobs: &'a [Job],
+    out: &'a Path,
+    kind: &'a Kind<'a>,
+}
+
+/// Name of the file that is locked while table and page are made, which tasks of a queue may do at once.
+const LOCK: &str = "sweep.lock";
+
+impl Sweep<'_> {
+    /// Makes the table and the page from the runs that have ended, by whichever command.
+    fn gather(&self) -> Result<(Vec<Option<JobEnd>>, SweepTable), Failure> {
+        let path = self.out.join(LOCK);
+        let lock = File::create(&path).and_then(|file| file.lock().map(|()| file));
+        let _lock = lock.map_err(|cause| Failure::unwritable(&path, "--out", &cause))?;
+        let ends: Vec<Option<JobEnd>> = self.jobs.iter().map(|job| self.end(job)).collect();
+        let pairs = self.jobs.iter().zip(&ends);
+        let points = pairs.clone().filter_map(|(job, end)| {
+            Some(Point {
+                job,
+                end: end.as_ref()?,
+            })
+        });
+        let table = (self.kind.table)(&points.collect::<Vec<_>>())?;
+        table.write(self.out)?;
+        let overview = Overview {
+            name: self.kind.name,
+            title: self.kind.title,
+            runs: pairs
+                .map(|(job, end)| self.run(job, end.as_ref()))
+                .collect(),
+        };
+        let written = overview.write(self.out);
+        written.map_err(|error| Failure::told(exit::OTHER, &error))?;
+        Ok((ends, table))
+    }
+
+    /// How a run ended: with an error that was kept, or as its results say.
+    fn end(&self, job: &Job) -> Option<JobEnd> {
+        let result = || (self.kind.result)(&job.folder);
+        job.kept_failure()
+            .or_else(|| Some(JobEnd::complete(result()?.exit_code())))
+    }
+
+    /// A run as the page shows it, with a report wherever there can be one.
+    fn run(&self, job: &Job, end: Option<&JobEnd>) -> SweptRun {
+        let folder = &job.folder;
+        if end.is_some() && !folder.join(REPORT).is_file() && folder.join(SUMMARY).is_file() {
+            // Of a run that failed there may be too little for one; the page then links its log.
+            let _ = (self.kind.report)(folder);
+        }
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
+        let log = format!("log/{OWN_LOG}");
+        let pages = [(REPORT, "report"), (&log, "log"), ("", "folder")];
+        let link = pages
+            .into_iter()
+            .find(|(file, _)| folder.join(file).exists());
+        let end = match end {
+            None => SweptEnd::Open,
+            Some(end) if end.is_complete() => {
+                (self.kind.result)(folder).map_or(SweptEnd::Open, SweptEnd::Complete)
+            }
+            Some(end) => SweptEnd::Failed {
+                how: ending(end.code),
+                told: end.told.trim().to_owned(),
+            },
+        };
+        SweptRun {
+            settings: job.settings.clone(),
+            link: link.map(|(file, word)| (format!("{name}/{file}"), word)),
+            end,
+        }
+    }
+}
+
 /// The exit code of a sweep: that of the first run that failed, else whether all are within their bands.
-pub(super) fn exit_code(ends: &[JobEnd]) -> u8 {
-    let failed = ends.iter().find(|end| !end.is_complete());
-    let outside = ends.iter().any(|end| end.code == exit::OUTSIDE_BANDS);
+fn exit_code<'e>(mut ends: impl Iterator<Item = &'e JobEnd> + Clone) -> u8 {
+    let failed = ends.clone().find(|end| !end.is_complete());
+    let outside = ends.any(|end| end.code == exit::OUTSIDE_BANDS);
     match failed {
         Some(end) => end.code,
         None if outside => exit::OUTSIDE_BANDS,
@@ -229,11 +326,18 @@ pub(super) fn ending(code: u8) -> String {
     }
 }
 
-/// Refuses a folder whose `sweep.csv` is no table of a sweep of some key.
+/// Refuses a folder whose `sweep.csv` is no table of a sweep of some key, or whose page is none of a sweep.
 pub(super) fn own_table<'k>(
     out: &Path,
     keys: impl Iterator<Item = &'k str>,
 ) -> Result<(), Failure> {
+    if !own_overview(out) {
+        let message = format!(
+            "{} is there, and is no page of a sweep: name another folder with `--out`, or move it",
+            out.join(OVERVIEW).display()
+        );
+        return Err(Failure::new(exit::CASE, message));
+    }
     let path = out.join(TABLE);
     let Ok(text) = std::fs::read_to_string(&path) else {
         return Ok(());
@@ -267,108 +371,6 @@ pub(super) fn table_is_free(path: &Path) -> Result<(), Failure> {
         false => Ok(()),
     });
     tried.map_err(|cause| Failure::unwritable(path, "--table", &cause))
-}
-
-/// `key=a,b,c` as `key=a`, `key=b`, `key=c`; commas inside brackets or quotes do not separate.
-fn axis(text: &str) -> Result<Vec<String>, Failure> {
-    let Some((key, values)) = text.split_once('=') else {
-        let message = format!("`--set {text}`: expected KEY=A,B,C");
-        return Err(Failure::new(exit::CASE, message));
-    };
-    let (mut depth, mut quoted, mut parts) = (0u32, false, vec![String::new()]);
-    for letter in values.chars() {
-        match letter {
-            '"' => quoted = !quoted,
-            '[' | '{' if !quoted => depth += 1,
-            ']' | '}' if !quoted => depth = depth.saturating_sub(1),
-            ',' if !quoted && depth == 0 => {
-                parts.push(String::new());
-                continue;
-            }
-            _ => {}
-        }
-        if let Some(part) = parts.last_mut() {
-            part.push(letter);
-        }
-    }
-    let settings = parts.into_iter();
-    let settings = settings.map(|value| format!("{}={}", key.trim(), value.trim()));
-    let settings: Vec<String> = settings.collect();
-    let twice = |(place, setting): (usize, &String)| settings[..place].contains(setting);
-    if let Some((place, _)) = settings.iter().enumerate().find(|one| twice(*one)) {
-        let message = format!(
-            "`--set {text}` names `{}` twice: each value is a run and a folder of its own",
-            settings[place]
-        );
-        return Err(Failure::new(exit::CASE, message));
-    }
-    Ok(settings)
-}
-
-/// Every combination of one value from each axis, the last axis changing fastest.
-fn combine(axes: &[Vec<String>]) -> Vec<Vec<String>> {
-    axes.iter().fold(vec![Vec::new()], |rows, axis| {
-        rows.iter()
-            .flat_map(|row| {
-                axis.iter().map(move |setting| {
-                    let mut next = row.clone();
-                    next.push(setting.clone());
-                    next
-                })
-            })
-            .collect()
-    })
-}
-
-/// Longest name of a folder in characters.
-const LONGEST: usize = 120;
-
-/// The runs of all combinations, each in a folder of its own.
-pub(super) fn jobs(out: &Path, combinations: Vec<Vec<String>>) -> Vec<Job> {
-    let mut taken = BTreeSet::new();
-    let numbered = combinations.into_iter().enumerate();
-    let job = |(place, settings): (usize, Vec<String>)| {
-        let mut name = folder_name(&settings);
-        if !taken.insert(name.clone()) {
-            name = format!("{name},{}", place + 1);
-            taken.insert(name.clone());
-        }
-        let folder = out.join(name);
-        Job { settings, folder }
-    };
-    numbered.map(job).collect()
-}
-
-/// A folder name made of the last words of the keys and the values: `diameter=4mm,velocity=1.5mps`.
-fn folder_name(settings: &[String]) -> String {
-    let part = |setting: &String| {
-        let (key, value) = setting.split_once('=').unwrap_or(("", setting));
-        let key = key.rsplit('.').next().unwrap_or(key);
-        let plain = |letter: char| match letter {
-            '/' => Some('p'),
-            '"' | '^' | '\'' => None,
-            letter if letter.is_alphanumeric() || "._+-".contains(letter) => Some(letter),
-            _ => Some('-'),
-        };
-        let words = [key, value].map(|text| {
-            // Blanks between numbers tell one list from another.
-            let parts: Vec<String> = text
-                .split_whitespace()
-                .map(|part| part.chars().filter_map(plain).collect())
-                .collect();
-            let is_number =
-                |part: &str| part.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-            parts.iter().fold(String::new(), |text, part| {
-                match text.is_empty() || !is_number(part) {
-                    true => text + part,
-                    false => text + "_" + part,
-                }
-            })
-        });
-        words.join("=")
-    };
-    let name = settings.iter().map(part).collect::<Vec<String>>().join(",");
-    name.chars().take(LONGEST).collect()
 }
 
 /// The table: the settings, the wall time, the quantities' last values, and with a
@@ -428,31 +430,24 @@ fn table(
     Ok(table)
 }
 
-/// The values of settings.
-pub(super) fn values(settings: &[String]) -> Vec<String> {
-    let values = settings.iter();
-    let values = values.filter_map(|setting| Some(setting.split_once('=')?.1.to_owned()));
-    values.collect()
+/// What came out of a run.
+fn result(summary: &Summary) -> SweptResult {
+    SweptResult {
+        verdict: summary.verdict,
+        warnings: summary.warnings.len() + summary.case_warnings.len(),
+        quantities: summary.quantities.clone(),
+        wall_time_s: summary.wall_time_s.total,
+    }
 }
 
 /// How a run stands: which quantities are outside their bands, and how many kinds of warning it has.
 fn verdict(summary: &Summary) -> String {
-    let quantities = summary.quantities.iter();
-    let outside: Vec<&str> = quantities
-        .filter(|(_, quantity)| quantity.verdict == Verdict::Fail)
-        .map(|(name, _)| name.as_str())
-        .collect();
-    let mut text = match outside[..] {
-        [] if summary.verdict == Verdict::None => "no bands stated".to_owned(),
-        [] => summary.verdict.word().to_owned(),
-        _ => format!("outside: {}", outside.join(", ")),
-    };
-    match summary.warnings.len() + summary.case_warnings.len() {
-        0 => {}
-        1 => text += "; 1 warning",
-        count => text += &format!("; {count} warnings"),
+    let result = result(summary);
+    match result.warnings {
+        0 => result.verdict(),
+        1 => format!("{}; 1 warning", result.verdict()),
+        count => format!("{}; {count} warnings", result.verdict()),
     }
-    text
 }
 
 /// The run that differs from `point` only in having the reference's value, where that is complete.
@@ -476,52 +471,4 @@ fn partner<'a>(
         let settings = other.job.settings.iter().map(String::as_str);
         settings.eq(wanted.iter().copied())
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn commas_separate_values_except_inside_brackets_and_quotes() {
-        let split = |text| axis(text).unwrap();
-        assert_eq!(split("a.b=1,2"), ["a.b=1", "a.b=2"]);
-        assert_eq!(split("a=[1,2],[3]"), ["a=[1,2]", "a=[3]"]);
-        assert_eq!(split("a=\"x,y\""), ["a=\"x,y\""]);
-        assert!(axis("nothing").is_err());
-        assert!(axis("a=1,2,1").is_err());
-    }
-
-    #[test]
-    fn folders_are_named_by_keys_and_values_and_none_twice() {
-        let settings = |one: &str, two: &str| vec![one.to_owned(), two.to_owned()];
-        let named = jobs(
-            Path::new("out"),
-            vec![
-                settings("particles.beads.diameter=4 mm", "gas.velocity=\"1.5 m/s\""),
-                settings("a.x=[1]", "b.x=2"),
-                settings("a.x=(1)", "c.x=2"),
-            ],
-        );
-        let names = named.iter().map(|job| job.folder.to_str().unwrap());
-        assert_eq!(
-            names.collect::<Vec<_>>(),
-            [
-                "out/diameter=4mm,velocity=1.5mps",
-                "out/x=-1-,x=2",
-                "out/x=-1-,x=2,3"
-            ]
-        );
-    }
-
-    #[test]
-    fn combinations_run_the_last_axis_fastest() {
-        let axes = [
-            vec!["a=1".to_owned(), "a=2".to_owned()],
-            vec!["b=x".to_owned(), "b=y".to_owned()],
-        ];
-        let rows = combine(&axes);
-        assert_eq!(rows.len(), 4);
-        assert_eq!(rows[1], ["a=1", "b=y"]);
-    }
 }

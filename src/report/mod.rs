@@ -3,11 +3,13 @@
 pub(crate) mod colour;
 mod film;
 pub(crate) mod number;
+pub(crate) mod overview;
 pub(crate) mod page;
 mod picture;
 pub(crate) mod plot;
 mod probes;
 mod section;
+mod swept_axis;
 mod ticks;
 mod voids;
 mod warnings;

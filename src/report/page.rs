@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use crate::results::Verdict;
 
 const STYLE: &str = include_str!("style.css");
+/// Rows of a table as blocks.
+const STACKED: &str = include_str!("stacked.css");
 
 /// Text made safe for HTML and SVG.
 pub(crate) fn escape(text: &str) -> String {
@@ -104,6 +106,23 @@ pub(crate) fn tiles(entries: &[(&str, String, String)]) -> String {
 /// A table; columns whose heading begins with `#` hold figures and are set to the right. Cells are
 /// HTML.
 pub(crate) fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+    labelled_table(head, rows, false)
+}
+
+/// Width of a column of a table that is not stacked, about, in px.
+const COLUMN: usize = 112;
+
+/// The same; where it is wider than the screen or the paper, each row is a block with a line for each cell.
+pub(crate) fn stacked_table(head: &[&str], rows: &[Vec<String>]) -> String {
+    let width = COLUMN * head.len();
+    format!(
+        "<style>@media(max-width:{width}px){{{STACKED}}}</style><div class=\"stack\">{}</div>",
+        labelled_table(head, rows, true)
+    )
+}
+
+/// A table, and with labels each cell knows its heading.
+fn labelled_table(head: &[&str], rows: &[Vec<String>], labels: bool) -> String {
     if rows.is_empty() {
         return String::new();
     }
@@ -128,7 +147,13 @@ pub(crate) fn table(head: &[&str], rows: &[Vec<String>]) -> String {
     for row in rows {
         html.push_str("<tr>");
         for (place, cell) in row.iter().enumerate() {
-            let _ = write!(html, "<td{}>{cell}</td>", class(place));
+            let label = match head.get(place) {
+                Some(name) if labels => {
+                    format!(" data-label=\"{}\"", escape(name.trim_start_matches('#')))
+                }
+                _ => String::new(),
+            };
+            let _ = write!(html, "<td{}{label}>{cell}</td>", class(place));
         }
         html.push_str("</tr>");
     }

@@ -24,7 +24,7 @@ use crate::results::{SUMMARY, Summary};
 const LOCK: &str = "lock";
 
 /// Name of the run's own log in `log/`.
-const OWN_LOG: &str = "calcine.log";
+pub(crate) const OWN_LOG: &str = "calcine.log";
 
 fn io_error(path: &Path, cause: io::Error) -> SimulationError {
     SimulationError::Io {

@@ -49,7 +49,7 @@ pub use calcine_coupler::boundary_value::BoundaryQuantity;
 pub use calcine_coupler::coordinator::{Control, Ending};
 pub use error::SimulationError;
 pub use folder::finished;
-pub(crate) use folder::{begun_before, claim, has_checkpoint};
+pub(crate) use folder::{OWN_LOG, begun_before, claim, has_checkpoint};
 
 use crate::case::model::Case;
 use crate::results::summary::RunFailure;

@@ -314,7 +314,7 @@ fn the_script_for_a_queue_in_the_docs_runs_and_resumes_with_a_stand_in_for_srun(
         .replace("-n 12", "-n 2")
         .replace("-particles 4", "-particles 2")
         .replace("-n 4", "-n 2")
-        .replace("23h30m", "3s");
+        .replace("results/bed $resume", "results/bed $resume --stop-after 3s");
     program("job", &script);
     let out = folder.path().join("results/bed");
     let rows = || fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());

@@ -47,6 +47,10 @@ mod shaft_flames;
 mod shaft_furnace;
 mod skewed_cavity;
 mod skewed_meshes;
+#[cfg(feature = "hdf5")]
+mod slurm;
+#[cfg(feature = "hdf5")]
+mod slurm_queue;
 mod spouted_bed;
 mod square_cylinder;
 #[cfg(feature = "hdf5")]
@@ -89,6 +93,8 @@ const ALL: &[(&str, fn())] = &[
     ("skewed-cavity", skewed_cavity::run),
     ("skewed-cavity-1000", skewed_cavity::run_faster),
     ("skewed-meshes", skewed_meshes::run),
+    #[cfg(feature = "hdf5")]
+    ("slurm", slurm::run),
     ("spouted-bed", spouted_bed::run),
     ("square-cylinder", square_cylinder::run),
     ("voids", voids::run),

@@ -58,8 +58,8 @@ usage: cargo xtask TASK
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, elastic-box, external-restarts, flame,
                           fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, repose, restarts, shaft-choices, shaft-flames,
-                          shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, spouted-bed,
-                          square-cylinder, voids";
+                          shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, slurm,
+                          spouted-bed, square-cylinder, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;

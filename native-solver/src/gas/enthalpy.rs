@@ -20,7 +20,7 @@ use super::chemistry::ReactionSource;
 use super::inflow;
 use super::state::GasState;
 use super::tolerance::ScalarTolerance;
-use crate::numerics::convection::{Field, beyond_upwind, bounds};
+use crate::numerics::convection::{ConvectedScalar, beyond_upwind, bounds};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
@@ -307,7 +307,7 @@ impl Enthalpy {
         }
         let [carried, conducted] = &self.gradients;
         let conduction = &self.conduction;
-        let field = Field {
+        let field = ConvectedScalar {
             values: &now.enthalpy,
             gradients: carried,
             bounds: &self.bounds,

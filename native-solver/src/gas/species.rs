@@ -20,7 +20,7 @@ use super::chemistry::ReactionSource;
 use super::inflow;
 use super::state::GasState;
 use super::tolerance::{Assembled, ScalarTolerance};
-use crate::numerics::convection::{Field, beyond_upwind, bounds, limited, limiter};
+use crate::numerics::convection::{ConvectedScalar, beyond_upwind, bounds, limited, limiter};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
@@ -258,7 +258,7 @@ impl SpeciesEquations {
             let last = fractions.len() - 1;
             let one = |k: usize| {
                 let noise = if k == last { frame.tolerance } else { 0.0 };
-                let field = Field {
+                let field = ConvectedScalar {
                     values: &fractions[k],
                     gradients: &gradients[k],
                     bounds: &bounds[k],
@@ -401,7 +401,7 @@ impl SpeciesEquations {
             face.neighbour
         };
         let before = now.temperature[up];
-        let field = Field {
+        let field = ConvectedScalar {
             values: &now.temperature,
             gradients: &self.temperature_gradients,
             bounds: &self.temperature_bounds,

@@ -7,7 +7,7 @@
 //!
 //! w_D the weight of D in linear interpolation: second order where q is smooth and monotone, upwind
 //! at extrema, and nothing to divide by zero. a is q_C less the value that the gradient leads to on the other side of C; on irregular cells
-//! that may lie beyond all values there, and is bounded by those of C and of what is beside it ([`Field::bounds`]). Limited linear interpolation has ψ = max(0, min(2 r/k, 1)): ψ Δ = 2 a/k where that is
+//! that may lie beyond all values there, and is bounded by those of C and of what is beside it ([`ConvectedScalar::bounds`]). Limited linear interpolation has ψ = max(0, min(2 r/k, 1)): ψ Δ = 2 a/k where that is
 //! the smaller, else Δ; Sweby's bounds of a scheme that makes no new extrema (doi 10.1137/0721062) hold at k = 1. Central differences
 //! carry a share of what linear interpolation to the centre of the face is beyond upwind, so that linear fields are exact on any
 //! mesh where the share is one.
@@ -40,7 +40,7 @@ fn downstream(grid: &MeshGraph, index: usize, flux: f64) -> Vec3 {
 
 /// A scalar in the cells, as schemes of convection see it; those without a limiter do not look at the bounds.
 #[derive(Clone, Copy, Debug)]
-pub struct Field<'a> {
+pub struct ConvectedScalar<'a> {
     /// Values of the cells.
     pub values: &'a [f64],
     /// Their gradients.
@@ -49,7 +49,7 @@ pub struct Field<'a> {
     pub bounds: &'a [[f64; 2]],
 }
 
-impl Field<'_> {
+impl ConvectedScalar<'_> {
     // Not `clamp`, which panics where a diverging flow is not a number.
     /// q_C less what the gradient leads to at the mirror image of the cell downstream, as far as that lies within the bounds.
     #[inline]
@@ -87,7 +87,7 @@ pub fn beyond_upwind(
     grid: &MeshGraph,
     index: usize,
     flux: f64,
-    field: Field<'_>,
+    field: ConvectedScalar<'_>,
 ) -> f64 {
     let (values, gradients) = (field.values, field.gradients);
     let (up, down, weight) = sides(grid, index, flux);
@@ -119,7 +119,13 @@ pub fn beyond_upwind(
 /// The limiter ψ of an internal face for a scalar, in [0, 2]. Where there is noise, differences Δ well below it limit nobody, so that a
 /// field that is uniform but for what solvers leave does not steer others that share its limiter: ψ s + 2 (1 − s), s = Δ²/(Δ² + noise²).
 #[inline]
-pub fn limiter(grid: &MeshGraph, index: usize, flux: f64, field: Field<'_>, noise: f64) -> f64 {
+pub fn limiter(
+    grid: &MeshGraph,
+    index: usize,
+    flux: f64,
+    field: ConvectedScalar<'_>,
+    noise: f64,
+) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
     let difference = field.values[down] - field.values[up];
     let other = field.behind(grid, index, flux);
@@ -203,8 +209,8 @@ mod tests {
     /// Without bounds.
     const ANY: [[f64; 2]; 6] = [[f64::NEG_INFINITY, f64::INFINITY]; 6];
 
-    fn field<'a>(values: &'a [f64], gradients: &'a [Vec3]) -> Field<'a> {
-        Field {
+    fn field<'a>(values: &'a [f64], gradients: &'a [Vec3]) -> ConvectedScalar<'a> {
+        ConvectedScalar {
             values,
             gradients,
             bounds: &ANY,
@@ -242,7 +248,7 @@ mod tests {
         assert_eq!(found, [[0.0, 3.0], [1.0, 5.0], [3.0, 5.0]]);
         let scheme = Convection::VanLeer;
         // a = 2 and Δ = 2, for 4 and 2 without bounds.
-        let bounded = Field {
+        let bounded = ConvectedScalar {
             values: &values,
             gradients: &slope,
             bounds: &found,
