@@ -78,3 +78,79 @@ fn a_run_killed_while_a_stone_burns_resumes_to_the_same_bits() {
         program::command(&case, out, &[], &settings)
     });
 }
+
+/// A porous ball with carbon in air that has a hundredth of oxygen: far leaner than the share of the pressure by which `auto` turns.
+const LEAN: &str = r#"format = 1
+title = "Carbon in a porous ball burns in lean oxygen"
+[time]
+end = "400 s"
+process_step = "20 s"
+[mesh]
+box = { size = "20 20 20 mm", cells = [1, 1, 1] }
+[materials.ball]
+density = "1500 kg/m^3"
+composition = { mass = { C = 0.2, Al2O3 = 0.8 } }
+conductivity = "1 W/m/K"
+inside = "auto"
+[materials.ball.radial]
+shells = 20
+grading = 4
+true_densities = { C = "2200 kg/m^3", Al2O3 = "3970 kg/m^3" }
+pore_diameter = "1 um"
+tortuosity = 3
+permeability = { law = "constant", value = "1e-16 m^2" }
+[gas]
+mixture = "lean air"
+species = ["O2", "CO2", "N2"]
+schmidt = 0.7
+controls = { convection = "upwind" }
+initial = { temperature = "1100 K", pressure = "1 atm", velocity = "0 0 1 m/s", composition = { mole = { O2 = 0.01, N2 = 0.99 } } }
+[gas.patch.bottom]
+inlet = { superficial_velocity = "1 m/s", temperature = "1100 K", composition = { mole = { O2 = 0.01, N2 = 0.99 } } }
+[gas.patch.top]
+outlet = { pressure = "1 atm" }
+[gas.patch.side]
+symmetry = {}
+[[particles]]
+name = "ball"
+material = "ball"
+diameter = "10 mm"
+motion = "frozen"
+place = { grid = { first = "10 10 10 mm", spacing = "1 1 1 mm", counts = [1, 1, 1] } }
+temperature = "1100 K"
+[[reactions]]
+name = "burn"
+equation = "C + O2 => CO2"
+law = "first-order"
+rate = { factor = 1000, orders = { O2 = 1 } }
+[laws]
+drag = { law = "none" }
+heat_transfer = { law = "ranz-marshall" }
+mass_transfer = { law = "ranz-marshall" }
+conduction = { law = "none" }
+radiation = { law = "none" }
+[coupling]
+mapping = "centroid"
+[output]
+every = "400 s"
+[[quantities]]
+name = "mass"
+measure = { particles = "mass", statistic = "mean" }
+"#;
+
+#[test]
+fn a_ball_in_lean_oxygen_takes_its_shells_where_the_oxygen_runs_out_inside() {
+    let folder = tempfile::tempdir().unwrap();
+    let burnt = |inside: &str| {
+        let text = LEAN.replace("\"auto\"", &format!("\"{inside}\""));
+        let out = program::run_text(folder.path(), inside, &text, &[]);
+        let mass = Summary::read(&out).unwrap().quantities["mass"].value;
+        std::f64::consts::PI / 6.0 * 1e-6 * 1500.0 - mass.unwrap()
+    };
+    let [all, auto] = ["radial", "auto"].map(burnt);
+    println!("{all} {auto}");
+    assert!(
+        all > 1e-6 && (auto / all - 1.0).abs() < 1e-3,
+        "{auto} for {all}"
+    );
+}

@@ -59,7 +59,8 @@ pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
 }
 
 /// R √(r/(D c)) of a reaction forwards, nothing having reacted, at the hottest temperature in K of the gas that comes in: r in
-/// mol/m³/s by the gas at the start, D the mean diffusivity in its pores, c the moles of gas in a volume.
+/// mol/m³/s by the gas at the start, D the mean diffusivity in its pores, c the moles in a volume of the gas that it uses and would use
+/// up first, of all gas where it uses none.
 fn thiele(
     case: &Case,
     population: &Population,
@@ -126,6 +127,9 @@ fn thiele(
     let mean = each.sum::<f64>() / fractions.len() as f64;
     let diffusivity = mean * porosity / material.radial.tortuosity?;
     let radius = (sphere::volume_of_diameter(diameter) * 0.75 / PI).cbrt();
-    let number = radius * (rate / (diffusivity * moles)).sqrt();
+    let used = reaction.gases.iter().filter(|one| one.1 < 0.0);
+    let lasting = used.map(|&(g, n)| fractions[g] * moles / -n);
+    let first = lasting.reduce(f64::min).unwrap_or(moles);
+    let number = radius * (rate / (diffusivity * first)).sqrt();
     number.is_finite().then_some((number, kelvin))
 }

@@ -13,6 +13,8 @@ const MEAN_SQUARE: f64 = 0.6;
 const WHOLE: f64 = 1.0 / (1.0 - MEAN_SQUARE);
 /// Share of its mean below which a profile does not begin: what steady heating has is not steeper at any tolerance of use.
 const LEAST_TEMPERATURE: f64 = 0.5;
+/// Share of the pressure below which no gas matters.
+const TRACE: f64 = 1e-6;
 /// Rounds of Newton's method that move a profile to its enthalpy.
 const ROUNDS: usize = 4;
 
@@ -100,17 +102,37 @@ impl Radial {
 }
 
 /// What one shell hides: the difference in K between centre and surface of a parabola with the heat that passes the surface, and that of
-/// the partial pressure of a gas over the pressure, with the flow that does.
+/// the partial pressure of a gas with the flow that does, of the gas for which it is largest: over the pressure of a gas that comes out,
+/// and over that of the gas itself at the surface of one that goes in, since what uses it follows it however lean it is.
 pub(super) fn hidden(lane: usize, ws: &RadialWorkspace, outside: &Outside<'_>) -> [f64; 2] {
     let now = &ws.start;
     let kelvin = WHOLE * (now.temperature[0][lane] - now.temperature[1][lane]).abs();
     let g = ws.gases;
-    let drops = (0..g).map(|k| (now.pressure[k][lane] - now.pressure[g + k][lane]).abs());
-    let most = drops.fold(0.0, f64::max);
-    let share = if g > 0 {
-        WHOLE * most / outside.pressure
-    } else {
-        0.0
-    };
-    [kelvin, share]
+    let shares = (0..g).map(|k| {
+        let [inside, surface] = [k, g + k].map(|row| now.pressure[row][lane]);
+        share_of(inside, surface, outside.pressure)
+    });
+    [kelvin, WHOLE * shares.fold(0.0, f64::max)]
+}
+
+/// The difference of the partial pressures in Pa inside and at the surface of a gas, as a share.
+fn share_of(inside: f64, surface: f64, pressure: f64) -> f64 {
+    match surface > inside {
+        true => (surface - inside) / surface.max(TRACE * pressure),
+        false => (inside - surface) / pressure,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lean_gas_that_is_used_counts_by_itself_and_one_that_is_made_by_the_pressure() {
+        assert_eq!(share_of(500.0, 1000.0, 1e5), 0.5);
+        assert_eq!(share_of(2000.0, 1000.0, 1e5), 0.01);
+        // A trace, and what is nowhere.
+        assert_eq!(share_of(0.0, 1e-3, 1e5), 0.01);
+        assert_eq!(share_of(0.0, 0.0, 1e5), 0.0);
+    }
 }
