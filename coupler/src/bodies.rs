@@ -113,6 +113,8 @@ pub struct HeatBodies {
 
 /// Difference of temperatures in K whose heat is none at all for the convergence of attempts.
 const FAINT: f64 = 1e-3;
+/// Share of what a body holds that round-off may give and take in a window.
+const ROUND_OFF: f64 = 1e-12;
 /// Newton's method for a body's balance: its error is of the second order, and the balance nearly linear.
 const NEWTON_STEPS: usize = 50;
 
@@ -281,6 +283,7 @@ impl HeatBodies {
             apart += (given + own.radiated(kelvin, end) - holds).abs();
             exchanged += magnitude + self.from_walls[k].abs() + radiated.abs() / span;
             exchanged += FAINT * self.gives[k];
+            exchanged += ROUND_OFF * own.mass * own.difference(0.0, kelvin) / span;
         }
         if exchanged > 0.0 {
             apart / exchanged
@@ -530,6 +533,18 @@ mod tests {
         let expected = (1e12 + 2.0 / (0.5 * STEFAN_BOLTZMANN * 1e-4)).powf(0.25);
         let found = bodies.made[0];
         assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+    }
+
+    #[test]
+    fn round_off_about_a_body_in_equilibrium_leaves_nothing_open() {
+        let mut bodies = body(None);
+        begin(&mut bodies);
+        bodies.conductance[0][0] = 0.0;
+        bodies.gives[0] = 0.0;
+        let mut off = |watt: f64| bodies.credit(|_| 300.0, std::iter::once((0, watt)), [10.0, 0.0]);
+        // The body holds 300 J; 2e-14 W are a conductance of 0.1 W/K over the round-off of its temperature.
+        assert!(off(2e-14) < 1e-3);
+        assert!(off(1e-6) > 0.9);
     }
 
     #[test]
