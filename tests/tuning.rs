@@ -353,6 +353,15 @@ fn masses_are_relative_to_the_start_of_the_file_in_every_unit() {
         "{}",
         stated.3
     );
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), plain()).unwrap();
+    let path = folder.path().join("case.toml");
+    let case = parse_tuning(&path, &format!("{CASE}sample_mass = \"5 mg\""), &[]).unwrap();
+    assert!(
+        case.warnings[0].contains("`sample_share` states"),
+        "{:?}",
+        case.warnings
+    );
     let case = format!("{CASE}sample_share = 0.97");
     let told = told(&case, &plain().replace("(%)", "(mg)"));
     assert!(

@@ -13,6 +13,13 @@ const SAME_RATE: f64 = 0.1;
 /// Energies that differ by more than this share are told.
 const OTHER_ENERGY: f64 = 0.1;
 
+/// A mass at the start that a curve of shares has no use for.
+pub(crate) fn weighs_no_share(unit: &str) -> String {
+    format!(
+        "`sample_mass` has no effect on masses in {unit}: they are relative to their own start, which `sample_share` states"
+    )
+}
+
 /// Curves that end at unlike masses, with a loss that nobody states.
 pub(crate) fn unlike_ends(loss: f64) -> String {
     format!(

@@ -87,7 +87,7 @@ pub(in crate::case) fn tuning(
         _ => losses.sum(),
     };
     read.count(loss);
-    let mut warnings = Vec::new();
+    let mut warnings = std::mem::take(&mut read.warnings);
     if !stated
         && !tuned
         && let Some(measured) = measured
@@ -416,6 +416,8 @@ struct Targets {
     starts: Vec<Option<MassAtStart>>,
     /// Range of the conversion that counts, of each curve.
     ranges: Vec<Option<[f64; 2]>>,
+    /// What is to be told of them.
+    warnings: Vec<String>,
 }
 
 impl Targets {
@@ -426,6 +428,14 @@ impl Targets {
             read.files.extend(target.path.clone());
             target.lumped = of == Some(TunedModel::Lumped);
             for (curve, start) in target.curves().unwrap_or_default() {
+                if let Some(start) = &start
+                    && target.sample_mass.is_some()
+                    && !target.lumped
+                    && !CurveColumn::Mass.is_weighed(&start.unit)
+                    && curve.of(ComparedQuantity::LossRate).is_none()
+                {
+                    read.warnings.push(warn::weighs_no_share(&start.unit));
+                }
                 read.curves.push(curve);
                 read.starts.push(start);
                 read.ranges.push(target.conversion);
@@ -623,7 +633,7 @@ impl<'t, 'a> Target<'t, 'a> {
             },
             values,
             counted: Vec::new(),
-            start_values: start_values,
+            start_values,
         };
         if self.conversion.is_some() && curve.of(ComparedQuantity::Mass).is_none() {
             let help = "add mass to `compare`, or remove it";
