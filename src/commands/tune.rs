@@ -275,7 +275,7 @@ pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
             short(one.high)
         );
     }
-    for target in &case.targets {
+    for (target, start) in case.targets.iter().zip(&case.starts) {
         let names: Vec<&str> = target
             .values
             .iter()
@@ -295,11 +295,26 @@ pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
             temperature(to),
             60.0 * target.run.programme.heating_rate()
         );
+        if let Some(start) = start {
+            let from = match start.rows {
+                None => "as stated".into(),
+                Some(1) => "the first value".into(),
+                Some(rows) => format!("the mean of the first {rows}"),
+            };
+            text += &format!(
+                "        masses relative to {} {}, {from}\n",
+                figure(start.written, 6),
+                start.unit
+            );
+        }
     }
     let laws = case.model.laws.iter().map(|one| one.law.name);
     text += &format!("    laws: {}\n", laws.collect::<Vec<_>>().join(", "));
     if let [only] = &case.model.reactions[..] {
         text += &format!("    mass loss of the reactant: {:.4}\n", only.mass_loss);
+    }
+    for warning in &case.warnings {
+        text += &format!("    warning: {warning}\n");
     }
     say(text.trim_end())?;
     Ok(exit::OK)

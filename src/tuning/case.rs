@@ -9,6 +9,8 @@ use calcine_tuning::model::{
 };
 use calcine_tuning::{DifferenceForm, ParameterSpace, TargetCurve, TunedParameter};
 
+use super::curves::MassAtStart;
+
 /// A tuning as its file states it.
 #[derive(Clone, Debug)]
 pub struct TuningCase {
@@ -32,6 +34,10 @@ pub struct TuningCase {
     pub parameters: Vec<TunedParameter>,
     /// The curves.
     pub targets: Vec<TargetCurve>,
+    /// What the masses of each curve are relative to, where it has any.
+    pub starts: Vec<Option<MassAtStart>>,
+    /// Share of the sample that a conversion of one takes away: as stated, else that of the curves.
+    pub loss: f64,
     /// How it is tuned.
     pub method: MethodSpec,
     /// How well the parameters are known.

@@ -5,5 +5,5 @@ pub mod curves;
 pub mod outcome;
 pub mod page;
 pub mod tune;
-mod warn;
+pub(crate) mod warn;
 pub mod write;

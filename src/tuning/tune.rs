@@ -61,6 +61,21 @@ impl TuningProblem for WatchedProblem<'_> {
         self.count.fetch_add(1, Ordering::Relaxed);
         self.problem.differences(places, out)
     }
+    fn shifted(
+        &self,
+        places: &[f64],
+        shifts: &[Vec<f64>],
+        out: &mut Vec<Vec<f64>>,
+    ) -> Result<(), TuningError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(TuningError::Interrupted);
+        }
+        self.count.fetch_add(1, Ordering::Relaxed);
+        self.problem.shifted(places, shifts, out)
+    }
+    fn scales(&self) -> usize {
+        self.problem.scales()
+    }
     fn step(&self) -> f64 {
         self.problem.step()
     }
@@ -320,7 +335,8 @@ pub fn tune_sample(
         .iter()
         .map(|(_, problem, search)| {
             let (values, count) = (search.fitted.counts.iter().sum(), problem.space().len());
-            let sizes = search.fitted.counts.len();
+            // Sizes of the noise, and scales of curves.
+            let sizes = search.fitted.counts.len() + problem.scales();
             (
                 akaike(search.fitted.deviance(), values, count + sizes),
                 count,
@@ -411,8 +427,14 @@ fn curves(problem: &SampleProblem, places: &[f64]) -> Result<Vec<FittedCurve>, T
 
 /// Kissinger, Friedman, and Ozawa, Flynn and Wall over all curves that have a mass.
 fn energies(case: &TuningCase) -> LawFreeEnergies {
-    let runs: Vec<SmoothedRun> = case.targets.iter().filter_map(SmoothedRun::of).collect();
     let mut found = LawFreeEnergies::default();
+    let mut runs = Vec::new();
+    for target in &case.targets {
+        match SmoothedRun::of(target, case.loss) {
+            Some(run) => runs.push(run),
+            None => found.notes.push(warn::left_out(&target.name)),
+        }
+    }
     if runs.len() < 2 {
         return found;
     }

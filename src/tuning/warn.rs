@@ -13,6 +13,27 @@ const SAME_RATE: f64 = 0.1;
 /// Energies that differ by more than this share are told.
 const OTHER_ENERGY: f64 = 0.1;
 
+/// A mass at the start that a curve of shares has no use for.
+pub(crate) fn weighs_no_share(unit: &str) -> String {
+    format!(
+        "`sample_mass` has no effect on masses in {unit}: they are relative to their own start, which `sample_share` states"
+    )
+}
+
+/// Curves that end at unlike masses, with a loss that nobody states.
+pub(crate) fn unlike_ends(loss: f64) -> String {
+    format!(
+        "the curves end at unlike masses: the mass loss is taken as the largest, {} of the sample, and is too small where no curve runs to \
+         completion; state `mass_loss`, or tune it",
+        short3(loss)
+    )
+}
+
+/// A curve that tells nothing of energies without a law.
+pub(super) fn left_out(name: &str) -> String {
+    format!("{name} is left out: it has no mass, too few values, or a conversion below 5 %")
+}
+
 /// Differences whose neighbours go together.
 pub(super) fn memory(lag: f64) -> String {
     format!(

@@ -31,4 +31,4 @@ pub use problem::{TuningProblem, objectives_at, sum_of_squares};
 pub use programme::TemperatureProgramme;
 pub use random::SearchRandom;
 pub use space::{ParameterSpace, TunedParameter};
-pub use target::{ComparedQuantity, DifferenceForm, SampleProblem, TargetCurve};
+pub use target::{ComparedQuantity, DifferenceForm, SampleProblem, TargetCurve, WholeLoss};

@@ -15,6 +15,28 @@ pub trait TuningProblem: Sync {
     /// lengths do not depend on the places.
     fn differences(&self, places: &[f64], out: &mut Vec<Vec<f64>>) -> Result<(), TuningError>;
 
+    /// Differences from data that are shifted: each difference, and what an evaluation fits by itself, as if the measured values
+    /// were lower by the shift.
+    fn shifted(
+        &self,
+        places: &[f64],
+        shifts: &[Vec<f64>],
+        out: &mut Vec<Vec<f64>>,
+    ) -> Result<(), TuningError> {
+        self.differences(places, out)?;
+        for (list, shift) in out.iter_mut().zip(shifts) {
+            for (difference, shift) in list.iter_mut().zip(shift) {
+                *difference += shift;
+            }
+        }
+        Ok(())
+    }
+
+    /// Numbers beside the parameters that each evaluation fits by itself.
+    fn scales(&self) -> usize {
+        0
+    }
+
     /// Step in places at which difference quotients of it are exact enough: well above the noise of what it computes.
     fn step(&self) -> f64 {
         1e-4

@@ -92,6 +92,7 @@ fn many_grains(rate: f64, mass: f64) -> TargetCurve {
             (ComparedQuantity::Mass, loss),
         ],
         counted: Vec::new(),
+        start_values: None,
     }
 }
 

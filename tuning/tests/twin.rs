@@ -34,6 +34,7 @@ pub fn twin() -> SampleProblem {
             (ComparedQuantity::Mass, response.mass),
         ],
         counted: Vec::new(),
+        start_values: None,
     };
     let parameter = |name: &str, dimension, low, high| TunedParameter {
         name: name.into(),

@@ -7,7 +7,9 @@ use calcine_tuning::law::{CONVERSION_LAWS, conversion_law};
 use calcine_tuning::model::{
     HeatingRun, LUMPED_PARAMETERS, LumpedSettings, ModelParameter, SampleReaction,
 };
-use calcine_tuning::{ComparedQuantity, TargetCurve, TemperatureProgramme, TunedParameter};
+use calcine_tuning::{
+    ComparedQuantity, TargetCurve, TemperatureProgramme, TunedParameter, WholeLoss,
+};
 
 use crate::case::table::TableReader;
 use crate::case::units::shown;
@@ -17,8 +19,10 @@ use crate::case::words::{
 };
 use crate::tuning::case::{IntervalSpec, LawCandidate, MethodSpec, SampleSpec, TuningCase};
 use crate::tuning::curves::{
-    CurveColumn, CurveFile, CurveFileError, CurveRules, MeasuredRun, SheetForm, read_curves,
+    CurveColumn, CurveFile, CurveFileError, CurveRules, MassAtStart, MeasuredRun, SheetForm,
+    read_curves,
 };
+use crate::tuning::warn;
 
 /// Version of the format that this reader knows.
 const FORMAT: u64 = 1;
@@ -55,8 +59,8 @@ pub(in crate::case) fn tuning(
     let method = method(&root.table_or_empty("method")?);
     let intervals = intervals(&root.table_or_empty("intervals")?);
     let reactions = reactions(root);
-    let read = Targets::read(root, folder, of);
-    let loss = read.measured_loss();
+    let mut read = Targets::read(root, folder, of);
+    let measured = WholeLoss::of(&read.curves);
     let (reactions, laws) = reactions?;
     let crucible = (of? == TunedModel::Lumped).then_some((settings?, numbers?));
     let mut model = SampleSpec {
@@ -67,8 +71,30 @@ pub(in crate::case) fn tuning(
     if read.curves.is_empty() {
         return None;
     }
-    take_loss(root, &mut model, loss)?;
+    let stated = model.reactions.iter().all(|one| !one.mass_loss.is_nan());
+    take_loss(root, &mut model, measured.map(|one| one.loss))?;
     let parameters = parameters(root, &known_parameters(&model));
+    let tuned = parameters
+        .iter()
+        .any(|one| one.name.ends_with("mass_loss") || one.name.ends_with("reactant"));
+    let losses = model
+        .reactions
+        .iter()
+        .map(|one| one.reactant * one.mass_loss);
+    // A loss that is tuned is not known before.
+    let loss = match (stated && !tuned, measured) {
+        (false, Some(measured)) => measured.loss,
+        _ => losses.sum(),
+    };
+    read.count(loss);
+    let mut warnings = std::mem::take(&mut read.warnings);
+    if !stated
+        && !tuned
+        && let Some(measured) = measured
+        && measured.unlike
+    {
+        warnings.push(warn::unlike_ends(measured.loss));
+    }
     let name = path
         .file_stem()
         .map(|stem| stem.to_string_lossy().into_owned());
@@ -83,9 +109,11 @@ pub(in crate::case) fn tuning(
         parameters,
         files: read.files,
         targets: read.curves,
+        starts: read.starts,
+        loss,
         method: method?,
         intervals: intervals?,
-        warnings: Vec::new(),
+        warnings,
     };
     chosen_is_compared(root, &case);
     Some(case)
@@ -384,6 +412,12 @@ fn chosen_is_compared(root: &TableReader<'_>, case: &TuningCase) {
 struct Targets {
     files: Vec<PathBuf>,
     curves: Vec<TargetCurve>,
+    /// What the masses of each curve are relative to.
+    starts: Vec<Option<MassAtStart>>,
+    /// Range of the conversion that counts, of each curve.
+    ranges: Vec<Option<[f64; 2]>>,
+    /// What is to be told of them.
+    warnings: Vec<String>,
 }
 
 impl Targets {
@@ -393,7 +427,19 @@ impl Targets {
             let mut target = Target::of(table, folder);
             read.files.extend(target.path.clone());
             target.lumped = of == Some(TunedModel::Lumped);
-            read.curves.extend(target.curves().unwrap_or_default());
+            for (curve, start) in target.curves().unwrap_or_default() {
+                if let Some(start) = &start
+                    && target.sample_mass.is_some()
+                    && !target.lumped
+                    && !CurveColumn::Mass.is_weighed(&start.unit)
+                    && curve.of(ComparedQuantity::LossRate).is_none()
+                {
+                    read.warnings.push(warn::weighs_no_share(&start.unit));
+                }
+                read.curves.push(curve);
+                read.starts.push(start);
+                read.ranges.push(target.conversion);
+            }
             table.finish();
         }
         let mut names: Vec<String> = Vec::new();
@@ -408,18 +454,13 @@ impl Targets {
         read
     }
 
-    /// Mean share of the mass that the curves lose.
-    fn measured_loss(&self) -> Option<f64> {
-        let losses = self.curves.iter().filter_map(|curve| {
-            let mass = curve.of(ComparedQuantity::Mass)?;
-            // The noise of a few values at each end averages out.
-            let few = (mass.len() / 50).max(1);
-            let mean = |list: &[f64]| list.iter().sum::<f64>() / few as f64;
-            Some(mean(&mass[..few]) - mean(&mass[mass.len() - few..]))
-        });
-        let losses: Vec<f64> = losses.collect();
-        let count = losses.len();
-        (count > 0).then(|| losses.iter().sum::<f64>() / count as f64)
+    /// Counts what lies within the ranges of conversions, of the loss that goes with a conversion of one.
+    fn count(&mut self, loss: f64) {
+        for (curve, range) in self.curves.iter_mut().zip(&self.ranges) {
+            if let Some([low, high]) = *range {
+                curve.count_within(low, high, loss);
+            }
+        }
     }
 }
 
@@ -464,6 +505,10 @@ impl<'t, 'a> Target<'t, 'a> {
             needs_temperature: heating_rate.is_none(),
             largest_rise: table.number("largest_rise").unwrap_or(0.0),
             initial_mass: sample_mass,
+            initial_share: table
+                .has("sample_share")
+                .then(|| table.number("sample_share"))
+                .flatten(),
         };
         Self {
             path: table.text("file").map(|file| folder.join(file)),
@@ -490,7 +535,7 @@ impl<'t, 'a> Target<'t, 'a> {
         );
     }
 
-    fn curves(&self) -> Option<Vec<TargetCurve>> {
+    fn curves(&self) -> Option<Vec<(TargetCurve, Option<MassAtStart>)>> {
         let path = self.path.as_ref()?;
         let runs = match read_curves(path, &self.file) {
             Ok(runs) => runs,
@@ -500,7 +545,10 @@ impl<'t, 'a> Target<'t, 'a> {
             }
         };
         let several = runs.len() > 1;
-        let curves = runs.into_iter().map(|run| self.curve(run, several));
+        let curves = runs.into_iter().map(|run| {
+            let start = run.start.clone();
+            Some((self.curve(run, several)?, start))
+        });
         curves.collect()
     }
 
@@ -571,7 +619,8 @@ impl<'t, 'a> Target<'t, 'a> {
             return None;
         }
         let rate = programme.heating_rate() * 60.0;
-        let mut curve = TargetCurve {
+        let start_values = run.start.as_ref().and_then(|one| one.rows);
+        let curve = TargetCurve {
             name: match &self.name {
                 Some(name) if several => format!("{name} {}", run.label),
                 Some(name) => name.clone(),
@@ -584,14 +633,12 @@ impl<'t, 'a> Target<'t, 'a> {
             },
             values,
             counted: Vec::new(),
+            start_values,
         };
-        if let Some([low, high]) = self.conversion {
-            if curve.of(ComparedQuantity::Mass).is_none() {
-                let help = "add mass to `compare`, or remove it";
-                self.table
-                    .fail("conversion", "needs the mass to be compared", help);
-            }
-            curve.count_within(low, high);
+        if self.conversion.is_some() && curve.of(ComparedQuantity::Mass).is_none() {
+            let help = "add mass to `compare`, or remove it";
+            self.table
+                .fail("conversion", "needs the mass to be compared", help);
         }
         Some(curve)
     }

@@ -6,6 +6,7 @@ use super::CurveFileError;
 use super::columns::{ColumnChoice, FoundColumn, find};
 use super::curve_column::CurveColumn;
 use super::sheet::{Sheet, SheetForm, decode, sheet};
+use super::start::{MassAtStart, plateau};
 
 /// How a file of curves is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,8 +26,10 @@ pub struct CurveRules {
     pub needs_temperature: bool,
     /// Largest rise of the mass, as a share of its whole fall.
     pub largest_rise: f64,
-    /// Mass at the start in kg, where it is not the first value of the file.
+    /// Mass at the start in kg, where it is stated.
     pub initial_mass: Option<f64>,
+    /// Share that a mass in % has at the start, where it is stated.
+    pub initial_share: Option<f64>,
 }
 
 impl Default for CurveRules {
@@ -35,6 +38,7 @@ impl Default for CurveRules {
             needs_temperature: true,
             largest_rise: LARGEST_RISE,
             initial_mass: None,
+            initial_share: None,
         }
     }
 }
@@ -62,6 +66,8 @@ pub struct MeasuredRun {
     pub loss_rate: Vec<f64>,
     /// Mass at the start in kg, where the file has it.
     pub initial_mass: Option<f64>,
+    /// What its masses are relative to, where it has any.
+    pub start: Option<MassAtStart>,
     /// Line of each row.
     pub lines: Vec<usize>,
 }
@@ -238,18 +244,21 @@ impl Columns {
         }
         let (mut mass, mut loss_rate) = (optional(&self.mass), optional(&self.rate));
         let mut initial = rules.initial_mass;
+        let mut relative_to = None;
+        // Rates in % go by the share of the start as masses do.
+        let mut share = rules.initial_share.unwrap_or(1.0);
         if let Some(found) = &self.mass {
             let weighed = CurveColumn::Mass.is_weighed(&found.unit);
-            let start = match (weighed, rules.initial_mass) {
-                (true, Some(stated)) => stated,
-                // The noise of a few values averages out: an error of this one would shift the whole curve.
-                (true, None) => {
-                    let few = (mass.len() / 50).max(1);
-                    mass[..few].iter().sum::<f64>() / few as f64
-                }
-                // Shares are of the mass at the start; files whose first value is not 100 % have lost something before.
-                (false, _) => 1.0,
+            if weighed && rules.initial_share.is_some() {
+                let fact = format!("the mass is in {}, of which no share is stated", found.unit);
+                return wrong(0, fact, "state `sample_mass` in place of `sample_share`");
+            }
+            let stated = match weighed {
+                true => rules.initial_mass,
+                false => rules.initial_share,
             };
+            let rows = plateau(&mass);
+            let start = stated.unwrap_or_else(|| mass[..rows].iter().sum::<f64>() / rows as f64);
             if !(start > 0.0 && mass[0] > 0.0) {
                 let fact = format!(
                     "the mass is {} {} at the start",
@@ -273,6 +282,15 @@ impl Columns {
             if weighed && initial.is_none() {
                 initial = Some(start);
             }
+            if !weighed {
+                share = start;
+            }
+            relative_to = Some(MassAtStart {
+                value: start,
+                written: start / found.factor,
+                unit: found.unit.clone(),
+                rows: stated.is_none().then_some(rows),
+            });
             mass.iter_mut().for_each(|m| *m /= start);
             if let Err((k, fact, help)) = falls(&mass, rules.largest_rise) {
                 return wrong(k, fact, &help);
@@ -288,6 +306,8 @@ impl Columns {
                     return wrong(0, fact, "state `sample_mass` of the target");
                 };
                 loss_rate.iter_mut().for_each(|r| *r /= start);
+            } else {
+                loss_rate.iter_mut().for_each(|r| *r /= share);
             }
             // Instruments write the derivative of the mass, which is negative, or its size.
             let sum: f64 = loss_rate.iter().sum();
@@ -300,6 +320,7 @@ impl Columns {
             mass,
             loss_rate,
             initial_mass: initial,
+            start: relative_to,
             lines: rows.iter().map(|&k| sheet.lines[k]).collect(),
         })
     }

@@ -125,7 +125,7 @@ impl CurveColumn {
     }
 
     /// True of units of a mass that need the mass at the start.
-    pub(super) fn is_weighed(self, unit: &str) -> bool {
+    pub(crate) fn is_weighed(self, unit: &str) -> bool {
         matches!(self, Self::Mass | Self::LossRate) && unit.contains('g')
     }
 }

@@ -8,6 +8,7 @@ mod columns;
 mod curve;
 mod curve_column;
 mod sheet;
+mod start;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ pub use columns::ColumnChoice;
 pub use curve::{CurveFile, CurveRules, MeasuredRun, parse_curves, read_curves};
 pub use curve_column::CurveColumn;
 pub use sheet::{Delimiter, SheetForm};
+pub use start::MassAtStart;
 
 /// What is wrong with a file of curves: the fact, where it stands, what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]

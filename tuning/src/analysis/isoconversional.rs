@@ -25,6 +25,7 @@ fn conversions() -> impl Iterator<Item = f64> {
 fn energies(
     runs: &[SmoothedRun],
     method: &'static str,
+    needs: &str,
     factor: f64,
     ordinate: impl Fn(&SmoothedRun, f64, f64) -> f64,
 ) -> Result<Vec<ConversionEnergy>, TuningError> {
@@ -47,7 +48,7 @@ fn energies(
         }
     }
     if runs.len() < 2 || found.is_empty() {
-        let cause = "needs two runs or more with different heating rates or temperatures".into();
+        let cause = format!("needs two runs or more with {needs}, which reach equal conversions");
         return Err(TuningError::Analysis { method, cause });
     }
     Ok(found)
@@ -57,7 +58,10 @@ fn energies(
 ///
 /// Source: Friedman, J. Polym. Sci. C 6 (1964) 183, doi 10.1002/polc.5070060121.
 pub fn friedman(runs: &[SmoothedRun]) -> Result<Vec<ConversionEnergy>, TuningError> {
-    energies(runs, "Friedman's method", 1.0, |_, _, rate| rate.ln())
+    let needs = "different heating rates or temperatures";
+    energies(runs, "Friedman's method", needs, 1.0, |_, _, rate| {
+        rate.ln()
+    })
 }
 
 /// The method of Ozawa, Flynn and Wall: ln β over 1/T at a conversion has the slope −1.0516 E/R for constant heating rates
@@ -69,7 +73,8 @@ pub fn ozawa_flynn_wall(runs: &[SmoothedRun]) -> Result<Vec<ConversionEnergy>, T
     energies(
         runs,
         "the method of Ozawa, Flynn and Wall",
+        "different constant heating rates",
         DOYLE,
-        |run, _, _| run.heating_rate.ln(),
+        |run, _, _| run.heating_rate.map_or(f64::NAN, f64::ln),
     )
 }

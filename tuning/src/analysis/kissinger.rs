@@ -22,7 +22,7 @@ pub struct KissingerResult {
 pub fn kissinger(runs: &[SmoothedRun]) -> Result<KissingerResult, TuningError> {
     let peaks: Vec<(f64, f64)> = runs
         .iter()
-        .filter_map(|run| Some((run.heating_rate, run.peak_temperature()?)))
+        .filter_map(|run| Some((run.heating_rate?, run.peak_temperature()?)))
         .filter(|(rate, _)| *rate > 0.0)
         .collect();
     let points: Vec<(f64, f64)> = peaks
@@ -32,7 +32,8 @@ pub fn kissinger(runs: &[SmoothedRun]) -> Result<KissingerResult, TuningError> {
     let line = FittedLine::through(&points).filter(|line| line.slope < 0.0);
     let line = line.ok_or_else(|| TuningError::Analysis {
         method: "Kissinger's method",
-        cause: "needs two heating rates or more, at which the peak moves up with the rate".into(),
+        cause: "needs two constant heating rates or more, at which the peak moves up with the rate"
+            .into(),
     })?;
     let energy = -line.slope * GAS_CONSTANT;
     Ok(KissingerResult {

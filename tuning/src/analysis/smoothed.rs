@@ -3,6 +3,8 @@ use crate::target::TargetCurve;
 
 /// Share of the time between conversions of 5 and 95 % over which points are smoothed, half to each side.
 const WINDOW: f64 = 0.15;
+/// Temperatures that leave a line by more than this share of their rise have no constant heating rate.
+const LINE: f64 = 0.1;
 /// Points within the window at least.
 const LEAST_POINTS: usize = 9;
 
@@ -14,8 +16,8 @@ const LEAST_POINTS: usize = 9;
 pub struct SmoothedRun {
     /// Name of the curve.
     pub name: String,
-    /// Heating rate in K/s.
-    pub heating_rate: f64,
+    /// Heating rate in K/s, where it is constant while the sample reacts.
+    pub heating_rate: Option<f64>,
     /// Temperatures in K.
     pub temperature: Vec<f64>,
     /// Conversions.
@@ -25,12 +27,14 @@ pub struct SmoothedRun {
 }
 
 impl SmoothedRun {
-    /// Of a curve with a mass that falls; `None` where it has too few points.
-    pub fn of(target: &TargetCurve) -> Option<Self> {
-        let raw = target.conversion()?;
+    /// Of a curve with a mass that falls, and the loss at a conversion of one, which all curves of an analysis share: equal
+    /// conversions of them are equal states, whether a curve runs to completion or not. `None` where it has too few points, or
+    /// does not reach a conversion of 5 %.
+    pub fn of(target: &TargetCurve, loss: f64) -> Option<Self> {
+        let raw = target.conversion(loss)?;
         let times = &target.run.times;
         let first = |limit: f64| raw.iter().position(|&x| x >= limit);
-        let (from, to) = (first(0.05)?, first(0.95)?);
+        let (from, to) = (first(0.05)?, first(0.95).unwrap_or(raw.len() - 1));
         let half = 0.5 * WINDOW * (times[to] - times[from]);
         let (mut conversion, mut rate) = (Vec::new(), Vec::new());
         let mut start = 0;
@@ -54,15 +58,12 @@ impl SmoothedRun {
                 .map(|&t| target.run.programme.at(t).0)
                 .collect(),
         };
-        // Ends of a smoothed curve are zero and one as those of the raw one are.
-        let (zero, one) = (*conversion.first()?, *conversion.last()?);
-        let span = one - zero;
         Some(Self {
             name: target.name.clone(),
-            heating_rate: slope_of(&times[from..=to], &temperature[from..=to]),
+            heating_rate: constant_slope(&times[from..=to], &temperature[from..=to]),
             temperature,
-            conversion: conversion.iter().map(|x| (x - zero) / span).collect(),
-            rate: rate.iter().map(|x| x / span).collect(),
+            conversion,
+            rate,
         })
     }
 
@@ -105,10 +106,15 @@ impl SmoothedRun {
     }
 }
 
-/// Mean slope of y over x.
-fn slope_of(x: &[f64], y: &[f64]) -> f64 {
+/// Slope of y over x, where y rises along a line.
+fn constant_slope(x: &[f64], y: &[f64]) -> Option<f64> {
     let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
-    super::FittedLine::through(&points).map_or(0.0, |line| line.slope)
+    let line = super::FittedLine::through(&points)?;
+    let rise = line.slope * (x[x.len() - 1] - x[0]);
+    let off = points
+        .iter()
+        .map(|(x, y)| (y - line.intercept - line.slope * x).abs());
+    (off.fold(0.0, f64::max) < LINE * rise).then_some(line.slope)
 }
 
 fn widened(mut start: usize, mut end: usize, count: usize) -> (usize, usize) {

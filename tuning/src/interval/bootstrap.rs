@@ -32,7 +32,7 @@ pub fn bootstrap(
     problem.differences(best, &mut lists)?;
     // Fits leave smaller differences than the noise has: n/(n − p).
     let values: usize = lists.iter().map(Vec::len).sum();
-    let free = best.len() - choice.fixed.len();
+    let free = best.len() - choice.fixed.len() + problem.scales();
     if values <= free {
         return Err(TuningError::TooFewValues {
             values,
@@ -83,13 +83,7 @@ impl TuningProblem for ShiftedProblem<'_> {
     }
 
     fn differences(&self, places: &[f64], out: &mut Vec<Vec<f64>>) -> Result<(), TuningError> {
-        self.problem.differences(places, out)?;
-        for (list, shift) in out.iter_mut().zip(&self.shifts) {
-            for (difference, shift) in list.iter_mut().zip(shift) {
-                *difference += shift;
-            }
-        }
-        Ok(())
+        self.problem.shifted(places, &self.shifts, out)
     }
 
     fn step(&self) -> f64 {

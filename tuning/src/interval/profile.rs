@@ -49,11 +49,12 @@ pub fn profile(
     level: f64,
 ) -> Result<ParameterProfile, TuningError> {
     let values: usize = fitted.counts.iter().sum();
-    let freedom = values as f64 - fitted.free.len() as f64;
+    let numbers = fitted.free.len() + problem.scales();
+    let freedom = values as f64 - numbers as f64;
     if freedom < 1.0 {
         return Err(TuningError::TooFewValues {
             values,
-            parameters: fitted.free.len(),
+            parameters: numbers,
         });
     }
     let t = student_quantile(0.5 + 0.5 * level, freedom);
