@@ -30,7 +30,7 @@ fn assert_burnt_out(summary: &Summary, share: f64) {
     // Four beads of 1 mm and 1000 kg/m³; round-off may leave less than nothing of them.
     let first = 2.0944e-6;
     assert!(
-        (-1e-15 * first..=share * first).contains(&used_up.mass_kg),
+        (-f64::EPSILON * first..=share * first).contains(&used_up.mass_kg),
         "{used_up:?}"
     );
     let lines = &summary.ledger.lines;

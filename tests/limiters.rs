@@ -1,6 +1,6 @@
 //! Limited convection of scalars on irregular cells: what flows in bounds what is there, in both gases.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 
@@ -130,6 +130,7 @@ fn no_gas_is_hotter_than_what_flows_in_on_irregular_cells() {
             let end = ends(folder.path(), gas, scheme, AIR);
             ["hottest", "coldest"].map(end)
         });
+        println!("{scheme}: {native:?}, {openfoam:?}");
         // By van Leer's limiter without bounds 411 K.
         assert!(
             native[0] < 401.0 && native[1] > 300.0,
@@ -151,6 +152,7 @@ fn no_gas_has_more_of_a_species_than_what_flows_in_on_irregular_cells() {
         let end = ends(folder.path(), gas, "\"van-leer\"", MIXTURE);
         ["hottest", "coldest", "most", "least"].map(end)
     });
+    println!("{native:?}, {openfoam:?}");
     let bounded = native[0] < 401.0 && native[1] > 300.0 && native[2] < 0.503 && native[3] > -1e-3;
     assert!(bounded, "{native:?}");
     for (k, band) in [0.05, 0.05, 1e-4, 1e-4].into_iter().enumerate() {

@@ -1,7 +1,7 @@
 //! calcineGasFoam beside walls that turn, and walls of a temperature along an axis, against exact solutions.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use calcine_coupler::conformance::annulus::{annulus, circular_couette};
+use calcine_coupler::conformance::annulus::{annulus, off_couette, turning_ring};
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{AxialTemperature, GasPatch, Schedule, WallHeat, WallVelocity};
@@ -9,26 +9,11 @@ use calcine_coupler::setup::{AxialTemperature, GasPatch, Schedule, WallHeat, Wal
 use crate::openfoam_periodic::{Run, at_rest, fluid, orders, rms};
 use crate::openfoam_support::mesh;
 
-fn turning(rate: f64) -> GasPatch {
-    GasPatch::Wall {
-        velocity: WallVelocity::Rotating {
-            point: Vec3::new(0.0, 0.0, 7.0),
-            angular_velocity: Vec3::new(0.0, 0.0, rate),
-        },
-        heat: WallHeat::Adiabatic,
-    }
-}
-
 #[test]
 fn gas_between_turning_cylinders_is_circular_couette_flow_to_order_two_on_one_rank_and_on_two() {
     let (radii, rates) = ([0.02, 0.05], [3.0, -1.0]);
     let setup = |rates: [f64; 2]| {
-        let mut setup = at_rest(&[
-            ("inner", turning(rates[0])),
-            ("outer", turning(rates[1])),
-            ("bottom", GasPatch::Empty),
-            ("top", GasPatch::Empty),
-        ]);
+        let mut setup = at_rest(&turning_ring(rates));
         setup.properties = fluid(0.1);
         setup
     };
@@ -41,9 +26,7 @@ fn gas_between_turning_cylinders_is_circular_couette_flow_to_order_two_on_one_ra
             let fields = run.gas.fields();
             errors.push(rms(&mesh, |cell| {
                 let place = mesh.cell_centre()[cell];
-                let around = Vec3::new(-place.y, place.x, 0.0) / place.xy().norm();
-                let exact = circular_couette(radii, rates, place.xy().norm());
-                (fields.velocity[cell] - exact * around).norm()
+                off_couette(radii, rates, place, fields.velocity[cell])
             }));
         }
         let orders = orders(&errors);

@@ -99,6 +99,13 @@ pub enum Convection {
     LimitedLinear(f64),
 }
 
+impl Convection {
+    /// True where enthalpy and temperature are limited; mass fractions are with any scheme of second order.
+    pub fn limits(self) -> bool {
+        matches!(self, Self::VanLeer | Self::LimitedLinear(_))
+    }
+}
+
 /// A composition over process time: (time in s, mass fractions in the order of the mixture's
 /// species) entries with increasing times, at least one; linear in between, constant outside.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,26 +3,15 @@
 
 use std::sync::Arc;
 
-use calcine_coupler::conformance::annulus::{annulus, circular_couette};
+use calcine_coupler::conformance::annulus::{annulus, off_couette, turning, turning_ring};
 use calcine_coupler::mesh::cylinder::{CylinderSpec, cylinder_mesh};
 use calcine_coupler::mesh::grading::uniform;
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::{AxialTemperature, GasPatch, Schedule, WallHeat, WallVelocity};
+use calcine_coupler::setup::{AxialTemperature, Schedule, WallHeat};
 use calcine_native::gas::NativeGas;
 
 use crate::common::{Driver, closure, duct, fluid, orders, rms, setup, slip, slip_wall};
-
-/// A wall that turns about an axis along z through the origin, at a rate in rad/s.
-fn turning(rate: f64) -> GasPatch {
-    GasPatch::Wall {
-        velocity: WallVelocity::Rotating {
-            point: Vec3::new(0.0, 0.0, 7.0),
-            angular_velocity: Vec3::new(0.0, 0.0, rate),
-        },
-        heat: WallHeat::Adiabatic,
-    }
-}
 
 #[test]
 fn gas_between_turning_cylinders_is_circular_couette_flow_to_order_two() {
@@ -30,12 +19,7 @@ fn gas_between_turning_cylinders_is_circular_couette_flow_to_order_two() {
     let mut errors = Vec::new();
     for across in [4, 8, 16] {
         let mesh = Arc::new(annulus(radii, 0.01, [across, 6 * across]).unwrap());
-        let mut setup = setup(&[
-            ("inner", turning(rates[0])),
-            ("outer", turning(rates[1])),
-            ("bottom", GasPatch::Empty),
-            ("top", GasPatch::Empty),
-        ]);
+        let mut setup = setup(&turning_ring(rates));
         setup.properties = fluid(1.0, 1000.0, 0.1, 0.03);
         let mut driver = Driver::new(&mesh, &setup);
         for _ in 0..20 {
@@ -44,9 +28,7 @@ fn gas_between_turning_cylinders_is_circular_couette_flow_to_order_two() {
         let fields = driver.gas.fields();
         errors.push(rms(&mesh, |cell| {
             let place = mesh.cell_centre()[cell];
-            let around = Vec3::new(-place.y, place.x, 0.0) / place.xy().norm();
-            let exact = circular_couette(radii, rates, place.xy().norm());
-            (fields.velocity[cell] - exact * around).norm()
+            off_couette(radii, rates, place, fields.velocity[cell])
         }));
         for momentum in &driver.received.momentum {
             assert!(closure(momentum) < 1e-8, "{momentum:?}");

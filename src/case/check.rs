@@ -115,7 +115,10 @@ pub fn check_report(
         let _ = writeln!(text, "                 from ({low}) to ({high}) m");
     }
     let directions = boundaries::lines(case, mesh);
-    for line in directions.into_iter().chain(mesh_shape::report(mesh).0) {
+    let shape = mesh_shape::pieces(mesh)
+        .into_iter()
+        .chain(mesh_shape::report(mesh).0);
+    for line in directions.into_iter().chain(shape) {
         let _ = writeln!(text, "                 {line}");
     }
     let _ = writeln!(

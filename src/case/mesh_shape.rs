@@ -51,7 +51,7 @@ pub(super) fn report(mesh: &Mesh) -> (Vec<String>, Vec<String>) {
         true => quality.boundary_skewness,
         false => skewness,
     };
-    let (mut lines, mut warnings) = (pieces(mesh), Vec::new());
+    let (mut lines, mut warnings) = (Vec::new(), Vec::new());
     if angle.value > SLIGHT[0] {
         lines.push(format!(
             "non-orthogonality up to {:.1} degrees, average {:.1}; largest {}",
@@ -99,7 +99,7 @@ pub(super) fn report(mesh: &Mesh) -> (Vec<String>, Vec<String>) {
 }
 
 /// A line on a mesh of several pieces.
-fn pieces(mesh: &Mesh) -> Vec<String> {
+pub(super) fn pieces(mesh: &Mesh) -> Vec<String> {
     let pieces = mesh.pieces();
     if pieces.len() < 2 {
         return Vec::new();

@@ -1,5 +1,6 @@
 #include "boundary.H"
 #include "cyclicFvPatch.H"
+#include "interpolateXY.H"
 #include "processorFvPatch.H"
 
 #include <sstream>
@@ -126,24 +127,12 @@ Foam::tmp<Foam::scalarField> Foam::calcine::boundary::driven::along
     scalar time
 ) const
 {
-    auto result = tmp<scalarField>::New(patch.size());
-    const vectorField& centres = patch.Cf();
-    const label last = positions.size() - 1;
-    forAll(centres, i)
+    scalarField temperatures(stations.size());
+    forAll(stations, i)
     {
-        const scalar x = centres[i] & axis;
-        label upper = 0;
-        while (upper <= last && positions[upper] < x)
-        {
-            ++upper;
-        }
-        const label lower = max(upper - 1, label(0));
-        upper = min(upper, last);
-        const scalar share = lower == upper
-          ? 0 : (x - positions[lower])/(positions[upper] - positions[lower]);
-        result.ref()[i] = (1 - share)*stations[lower].at(time) + share*stations[upper].at(time);
+        temperatures[i] = stations[i].at(time);
     }
-    return result;
+    return tmp<scalarField>::New(interpolateXY(scalarField(patch.Cf() & axis), positions, temperatures));
 }
 
 

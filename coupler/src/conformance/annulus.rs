@@ -5,6 +5,28 @@ use std::f64::consts::PI;
 use calcine_physics::Vec3;
 
 use crate::mesh::{Mesh, MeshError, Patch, Topology};
+use crate::setup::{GasPatch, WallHeat, WallVelocity};
+
+/// A wall that turns about z at a rate in rad/s.
+pub fn turning(rate: f64) -> GasPatch {
+    GasPatch::Wall {
+        velocity: WallVelocity::Rotating {
+            point: Vec3::new(0.0, 0.0, 7.0),
+            angular_velocity: Vec3::new(0.0, 0.0, rate),
+        },
+        heat: WallHeat::Adiabatic,
+    }
+}
+
+/// Conditions of the patches of a ring whose cylinders turn at rates in rad/s.
+pub fn turning_ring([inner, outer]: [f64; 2]) -> [(&'static str, GasPatch); 4] {
+    [
+        ("inner", turning(inner)),
+        ("outer", turning(outer)),
+        ("bottom", GasPatch::Empty),
+        ("top", GasPatch::Empty),
+    ]
+}
 
 /// A ring about z between two radii in m, one cell of a length in m along z, with cells along the radius and around. Its patches are
 /// `inner`, `outer`, `bottom` and `top`. Points lie on the circles.
@@ -114,9 +136,16 @@ pub fn annulus(
     Mesh::new(topology)
 }
 
+/// How far a velocity in m/s at a place in m is from that of [`circular_couette`].
+pub fn off_couette(radii: [f64; 2], rates: [f64; 2], place: Vec3, velocity: Vec3) -> f64 {
+    let r = place.xy().norm();
+    let around = Vec3::new(-place.y, place.x, 0.0) / r;
+    (velocity - circular_couette(radii, rates, r) * around).norm()
+}
+
 /// Speed around in m/s at a radius in m between two long cylinders of radii in m that turn at rates in rad/s: u = A r + B/r
 /// (Couette; Landau and Lifshitz, Fluid Mechanics, 1987, section 18).
-pub fn circular_couette([inner, outer]: [f64; 2], [of_inner, of_outer]: [f64; 2], r: f64) -> f64 {
+fn circular_couette([inner, outer]: [f64; 2], [of_inner, of_outer]: [f64; 2], r: f64) -> f64 {
     let (a, b) = (inner * inner, outer * outer);
     let whole = (of_outer * b - of_inner * a) / (b - a);
     whole * r + (of_inner - of_outer) * a * b / (b - a) / r

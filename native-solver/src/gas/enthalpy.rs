@@ -343,7 +343,9 @@ impl Enthalpy {
             };
             let (found, faces) = (&mut self.gradients[0], &mut self.faces);
             gradients(grid, &now.enthalpy, boundary, found, faces);
-            bounds(grid, &now.enthalpy, boundary, &mut self.bounds);
+            if frame.convection.limits() {
+                bounds(grid, &now.enthalpy, boundary, &mut self.bounds);
+            }
         }
         if !grid.orthogonal {
             let boundary = |index: usize, inner: f64| match *frame.boundary.at(index) {

@@ -345,12 +345,10 @@ impl SpeciesEquations {
             };
             let (found, faces) = (&mut self.temperature_gradients, &mut self.faces);
             gradients(grid, &now.temperature, boundary, found, faces);
-            bounds(
-                grid,
-                &now.temperature,
-                boundary,
-                &mut self.temperature_bounds,
-            );
+            if frame.convection.limits() {
+                let found = &mut self.temperature_bounds;
+                bounds(grid, &now.temperature, boundary, found);
+            }
         }
         let mut carried = std::mem::take(&mut self.carried);
         fill(&mut carried, |index| {

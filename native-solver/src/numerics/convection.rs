@@ -50,13 +50,13 @@ pub struct ConvectedScalar<'a> {
 }
 
 impl ConvectedScalar<'_> {
-    // Not `clamp`, which panics where a diverging flow is not a number.
     /// q_C less what the gradient leads to at the mirror image of the cell downstream, as far as that lies within the bounds.
     #[inline]
     fn behind(&self, grid: &MeshGraph, index: usize, flux: f64) -> f64 {
         let (up, down, _) = sides(grid, index, flux);
         let along = self.gradients[up].dot(&downstream(grid, index, flux));
         let [least, largest] = self.bounds[up];
+        // Not `clamp`, which panics where a diverging flow is not a number.
         self.values[up] - (self.values[down] - 2.0 * along).max(least).min(largest)
     }
 }

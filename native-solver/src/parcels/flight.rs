@@ -103,15 +103,20 @@ mod tests {
         assert!((velocity - Vec3::new(2.0, 0.0, 1.0 - 9.81 / 2.0)).norm() < 1e-15);
     }
 
-    #[test]
-    fn two_halves_are_the_whole() {
-        let flight = Flight {
+    /// A flight with a force, drag and a resistance.
+    fn of_all() -> Flight {
+        Flight {
             acceleration: Vec3::new(1.0, -2.0, -9.81),
             rate: 3.7,
             gas: Vec3::new(0.3, 0.1, 2.0),
             resistance: 1.9,
             wall: Vec3::new(-0.4, 0.0, 0.2),
-        };
+        }
+    }
+
+    #[test]
+    fn two_halves_are_the_whole() {
+        let flight = of_all();
         let start = Vec3::new(-1.0, 0.5, 4.0);
         let (whole, end) = flight.after(0.6, start);
         let (first, middle) = flight.after(0.3, start);
@@ -122,13 +127,7 @@ mod tests {
 
     #[test]
     fn drag_and_resistance_share_what_they_add_as_their_integrals_do() {
-        let flight = Flight {
-            acceleration: Vec3::new(1.0, -2.0, -9.81),
-            rate: 3.7,
-            gas: Vec3::new(0.3, 0.1, 2.0),
-            resistance: 1.9,
-            wall: Vec3::new(-0.4, 0.0, 0.2),
-        };
+        let flight = of_all();
         let (start, time) = (Vec3::new(-1.0, 0.5, 4.0), 0.6);
         let (way, end) = flight.after(time, start);
         let gained = end - start - flight.acceleration * time;

@@ -33,6 +33,7 @@ mod solids;
 mod species_data;
 mod time;
 pub(super) mod tuning;
+mod tuning_targets;
 mod turbulence;
 mod walls;
 mod zone;

@@ -1,0 +1,284 @@
+//! `[[targets]]` of a tuning.
+
+use std::path::{Path, PathBuf};
+
+use calcine_tuning::model::HeatingRun;
+use calcine_tuning::{ComparedQuantity, TargetCurve, TemperatureProgramme};
+
+use crate::case::table::TableReader;
+use crate::case::words::{DecimalName, DelimiterName, TunedModel};
+use crate::tuning::curves::{
+    CurveColumn, CurveFile, CurveFileError, CurveRules, MassAtStart, MeasuredRun, SheetForm,
+    read_curves,
+};
+use crate::tuning::warn;
+
+/// What the targets say.
+#[derive(Default)]
+pub(super) struct Targets {
+    /// Files that were read.
+    pub files: Vec<PathBuf>,
+    /// Curves of all of them.
+    pub curves: Vec<TargetCurve>,
+    /// What the masses of each curve are relative to.
+    pub starts: Vec<Option<MassAtStart>>,
+    /// Range of the conversion that counts, of each curve.
+    ranges: Vec<Option<[f64; 2]>>,
+    /// What is to be told of them.
+    pub warnings: Vec<String>,
+}
+
+impl Targets {
+    /// Reads all targets of a file; problems are recorded.
+    pub fn read(root: &TableReader<'_>, folder: &Path, of: Option<TunedModel>) -> Self {
+        let mut read = Self::default();
+        for table in &root.tables("targets") {
+            let mut target = Target::of(table, folder);
+            read.files.extend(target.path.clone());
+            target.lumped = of == Some(TunedModel::Lumped);
+            for (curve, start) in target.curves().unwrap_or_default() {
+                if let Some(start) = &start
+                    && target.sample_mass.is_some()
+                    && !target.lumped
+                    && !CurveColumn::Mass.is_weighed(&start.unit)
+                    && curve.of(ComparedQuantity::LossRate).is_none()
+                {
+                    read.warnings.push(warn::weighs_no_share(&start.unit));
+                }
+                read.curves.push(curve);
+                read.starts.push(start);
+                read.ranges.push(target.conversion);
+            }
+            table.finish();
+        }
+        let mut names: Vec<String> = Vec::new();
+        for curve in &mut read.curves {
+            let mut name = curve.name.clone();
+            while names.contains(&name) {
+                name.push('\'');
+            }
+            names.push(name.clone());
+            curve.name = name;
+        }
+        read
+    }
+
+    /// Counts what lies within the ranges of conversions, of the loss that goes with a conversion of one.
+    pub fn count(&mut self, loss: f64) {
+        for (curve, range) in self.curves.iter_mut().zip(&self.ranges) {
+            if let Some([low, high]) = *range {
+                curve.count_within(low, high, loss);
+            }
+        }
+    }
+}
+
+/// One `[[targets]]`.
+struct Target<'t, 'a> {
+    table: &'t TableReader<'a>,
+    path: Option<PathBuf>,
+    name: Option<String>,
+    file: CurveFile,
+    compare: Option<Vec<String>>,
+    sample_mass: Option<f64>,
+    heating_rate: Option<f64>,
+    start_temperature: Option<f64>,
+    conversion: Option<[f64; 2]>,
+    lumped: bool,
+}
+
+impl<'t, 'a> Target<'t, 'a> {
+    fn of(table: &'t TableReader<'a>, folder: &Path) -> Self {
+        let mut file = CurveFile::default();
+        if let Some(columns) = table.table_or_empty("columns") {
+            for (choice, column) in file.columns.iter_mut().zip(CurveColumn::ALL) {
+                choice.heading = columns.text(column.key()).map(str::to_owned);
+            }
+            columns.finish();
+        }
+        if let Some(units) = table.table_or_empty("units") {
+            for (choice, column) in file.columns.iter_mut().zip(CurveColumn::ALL) {
+                if column != CurveColumn::Run {
+                    choice.unit = units.text(column.key()).map(str::to_owned);
+                }
+            }
+            units.finish();
+        }
+        file.form = SheetForm {
+            delimiter: table.choice::<DelimiterName>("delimiter").map(|one| one.0),
+            decimal_comma: table.choice::<DecimalName>("decimal").map(|one| one.0),
+        };
+        let heating_rate = table.number("heating_rate");
+        let sample_mass = table.number("sample_mass");
+        file.rules = CurveRules {
+            needs_temperature: heating_rate.is_none(),
+            largest_rise: table.number("largest_rise").unwrap_or(0.0),
+            initial_mass: sample_mass,
+            initial_share: table
+                .has("sample_share")
+                .then(|| table.number("sample_share"))
+                .flatten(),
+        };
+        Self {
+            path: table.text("file").map(|file| folder.join(file)),
+            name: table.text("name").map(str::to_owned),
+            file,
+            compare: table
+                .has("compare")
+                .then(|| table.choices("compare"))
+                .flatten(),
+            sample_mass,
+            heating_rate,
+            start_temperature: table.number("start_temperature"),
+            conversion: range(table),
+            lumped: false,
+            table,
+        }
+    }
+
+    fn refused(&self, error: &CurveFileError) {
+        self.table.fail(
+            "file",
+            format!("cannot be taken: {error}"),
+            error.help.clone(),
+        );
+    }
+
+    fn curves(&self) -> Option<Vec<(TargetCurve, Option<MassAtStart>)>> {
+        let path = self.path.as_ref()?;
+        let runs = match read_curves(path, &self.file) {
+            Ok(runs) => runs,
+            Err(error) => {
+                self.refused(&error);
+                return None;
+            }
+        };
+        let several = runs.len() > 1;
+        let curves = runs.into_iter().map(|run| {
+            let start = run.start.clone();
+            Some((self.curve(run, several)?, start))
+        });
+        curves.collect()
+    }
+
+    fn curve(&self, run: MeasuredRun, several: bool) -> Option<TargetCurve> {
+        let programme = match self.heating_rate {
+            Some(rate) => {
+                let end = run.time.last().copied()?;
+                TemperatureProgramme::heating(self.start_temperature?, rate, end.max(1.0))
+            }
+            None => TemperatureProgramme::new(run.time.clone(), run.temperature.clone()),
+        };
+        let programme = match programme {
+            Ok(programme) => programme,
+            Err(error) => {
+                self.table.fail(
+                    "file",
+                    format!("cannot be taken: {error}"),
+                    "correct the file",
+                );
+                return None;
+            }
+        };
+        let mass = self.sample_mass.or(run.initial_mass);
+        if self.lumped && mass.is_none() {
+            self.table.missing("sample_mass");
+            return None;
+        }
+        let has = |quantity: ComparedQuantity| match quantity {
+            ComparedQuantity::Temperature => &run.temperature,
+            ComparedQuantity::Mass => &run.mass,
+            ComparedQuantity::LossRate => &run.loss_rate,
+        };
+        let wanted = |quantity: ComparedQuantity| match &self.compare {
+            Some(named) => named.iter().any(|name| name == quantity.name()),
+            None if has(ComparedQuantity::Mass).is_empty() => {
+                quantity == ComparedQuantity::LossRate
+            }
+            None => quantity == ComparedQuantity::Mass,
+        };
+        let mut values = Vec::new();
+        for quantity in ComparedQuantity::ALL.into_iter().filter(|one| wanted(*one)) {
+            let list = has(quantity);
+            if list.is_empty() {
+                let rule = format!("has {}, for which the file has no column", quantity.name());
+                self.table.fail(
+                    "compare",
+                    rule,
+                    "remove it, or name its column in `columns`",
+                );
+                return None;
+            }
+            if quantity == ComparedQuantity::Temperature && !self.lumped {
+                let help = "remove it: a kinetic model takes the temperature of the file as it is";
+                self.table.fail("compare", "has temperature", help);
+                return None;
+            }
+            if quantity == ComparedQuantity::Temperature && self.heating_rate.is_none() {
+                let help = "the furnace's temperature comes from heating_rate then: state it, for example \"15 K/min\"";
+                self.table
+                    .fail("compare", "has temperature, the sample's", help);
+                return None;
+            }
+            values.push((quantity, list.clone()));
+        }
+        if values.is_empty() {
+            self.table
+                .fail("compare", "is empty", "name mass, loss_rate or temperature");
+            return None;
+        }
+        let rate = programme.heating_rate() * 60.0;
+        let start_values = run.start.as_ref().and_then(|one| one.rows);
+        let curve = TargetCurve {
+            name: match &self.name {
+                Some(name) if several => format!("{name} {}", run.label),
+                Some(name) => name.clone(),
+                None => format!("{:.3} K/min", rate).replace(".000", ""),
+            },
+            run: HeatingRun {
+                programme,
+                sample_mass: mass.unwrap_or(0.0),
+                times: run.time,
+            },
+            values,
+            counted: Vec::new(),
+            start_values,
+        };
+        if self.conversion.is_some() && curve.of(ComparedQuantity::Mass).is_none() {
+            let help = "add mass to `compare`, or remove it";
+            self.table
+                .fail("conversion", "needs the mass to be compared", help);
+        }
+        Some(curve)
+    }
+}
+
+/// `conversion = [low, high]`.
+fn range(table: &TableReader<'_>) -> Option<[f64; 2]> {
+    if !table.has("conversion") {
+        return None;
+    }
+    let item = table.raw("conversion")?;
+    let number = |value: &toml_edit::Value| {
+        value
+            .as_float()
+            .or_else(|| value.as_integer().map(|n| n as f64))
+    };
+    let numbers = item
+        .as_array()
+        .map(|list| list.iter().map(number).collect::<Vec<_>>());
+    match numbers.as_deref() {
+        Some([Some(low), Some(high)]) if 0.0 <= *low && low < high && *high <= 1.0 => {
+            Some([*low, *high])
+        }
+        _ => {
+            let rule = "needs two numbers from 0 to 1, the lower one first";
+            table.fail(
+                "conversion",
+                rule,
+                "for example conversion = [0.001, 0.999]",
+            );
+            None
+        }
+    }
+}
