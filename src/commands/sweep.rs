@@ -246,7 +246,8 @@ impl Sweep<'_> {
         let path = self.out.join(LOCK);
         let lock = File::create(&path).and_then(|file| file.lock().map(|()| file));
         let _lock = lock.map_err(|cause| Failure::unwritable(&path, "--out", &cause))?;
-        let ends: Vec<Option<JobEnd>> = self.jobs.iter().map(|job| self.end(job)).collect();
+        let found = self.jobs.iter().map(|job| self.found(job));
+        let (ends, results): (Vec<Option<JobEnd>>, Vec<_>) = found.unzip();
         let pairs = self.jobs.iter().zip(&ends);
         let points = pairs.clone().filter_map(|(job, end)| {
             Some(Point {
@@ -260,7 +261,8 @@ impl Sweep<'_> {
             name: self.kind.name,
             title: self.kind.title,
             runs: pairs
-                .map(|(job, end)| self.run(job, end.as_ref()))
+                .zip(results)
+                .map(|((job, end), result)| self.run(job, end.as_ref(), result))
                 .collect(),
         };
         let written = overview.write(self.out);
@@ -268,15 +270,18 @@ impl Sweep<'_> {
         Ok((ends, table))
     }
 
-    /// How a run ended: with an error that was kept, or as its results say.
-    fn end(&self, job: &Job) -> Option<JobEnd> {
-        let result = || (self.kind.result)(&job.folder);
-        job.kept_failure()
-            .or_else(|| Some(JobEnd::complete(result()?.exit_code())))
+    /// How a run ended: with an error that was kept, or as its results say, and these.
+    fn found(&self, job: &Job) -> (Option<JobEnd>, Option<SweptResult>) {
+        if let Some(end) = job.kept_failure() {
+            return (Some(end), None);
+        }
+        let result = (self.kind.result)(&job.folder);
+        let end = result.as_ref().map(|one| JobEnd::complete(one.exit_code()));
+        (end, result)
     }
 
     /// A run as the page shows it, with a report wherever there can be one.
-    fn run(&self, job: &Job, end: Option<&JobEnd>) -> SweptRun {
+    fn run(&self, job: &Job, end: Option<&JobEnd>, result: Option<SweptResult>) -> SweptRun {
         let folder = &job.folder;
         if end.is_some() && !folder.join(REPORT).is_file() && folder.join(SUMMARY).is_file() {
             // Of a run that failed there may be too little for one; the page then links its log.
@@ -288,12 +293,10 @@ impl Sweep<'_> {
         let link = pages
             .into_iter()
             .find(|(file, _)| folder.join(file).exists());
-        let end = match end {
-            None => SweptEnd::Open,
-            Some(end) if end.is_complete() => {
-                (self.kind.result)(folder).map_or(SweptEnd::Open, SweptEnd::Complete)
-            }
-            Some(end) => SweptEnd::Failed {
+        let end = match (result, end) {
+            (Some(result), _) => SweptEnd::Complete(result),
+            (None, None) => SweptEnd::Open,
+            (None, Some(end)) => SweptEnd::Failed {
                 how: ending(end.code),
                 told: end.told.trim().to_owned(),
             },
