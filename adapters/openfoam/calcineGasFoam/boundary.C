@@ -60,7 +60,7 @@ Foam::calcine::boundary::boundary
         {
             const dictionary& along = dict.subDict("along");
             d.axis = along.get<vector>("axis");
-            d.positions = along.get<scalarList>("positions");
+            d.positions = along.get<scalarField>("positions");
             d.stations.setSize(d.positions.size());
             forAll(d.positions, i)
             {
