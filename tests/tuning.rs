@@ -117,6 +117,10 @@ fn bad_curves_are_refused_with_line_fact_and_remedy() {
         ),
         (comma(&tenths), ["a.csv", "decimal sign", "semicolons"]),
         (
+            replaced(&line(30), "14.2,280,NaN"),
+            ["line 30", "column 3 has NaN", "remove the row"],
+        ),
+        (
             replaced(&line(30), "14,oops,80"),
             ["line 30", "\"oops\" is not a number", "remove the line"],
         ),
@@ -409,6 +413,88 @@ fn holds_that_end_early_agree_with_the_law_behind_them() {
         (energy.as_f64().unwrap() / 180e3 - 1.0).abs() < 1e-3,
         "{told}"
     );
+}
+
+/// Contracting area at 10 K/min from 600 K, 30 % lost, with another energy in J/mol: conversions by Riemann sums of 1 s.
+fn heated(energy: f64) -> String {
+    let mut csv = "time [min]\ttemperature [K]\tmass [%]\n".to_owned();
+    let mut x = 0.0;
+    for second in 0..2400 {
+        let temperature = 600.0 + f64::from(second) / 6.0;
+        x += 1e8 * (-energy / (8.314_462_618 * temperature)).exp();
+        if second % 15 == 0 {
+            let mass = 100.0 * (1.0 - 0.3 * (1.0 - (1.0 - x).max(0.0).powi(2)));
+            csv += &format!(
+                "{:.6}\t{temperature:.5}\t{mass:.8}\n",
+                f64::from(second) / 60.0
+            );
+        }
+    }
+    csv
+}
+
+/// A curve with `fit = false` leaves the parameters as they are without it, to the bit, and its errors are those of its rows in
+/// `curves.csv`.
+#[test]
+fn curves_that_are_kept_back_are_compared_and_not_fitted() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("a.csv"), heated(150e3)).unwrap();
+    fs::write(at("b.csv"), heated(151e3)).unwrap();
+    let case = CASE.replace("F1", "R2")
+        + "sample_share = \"100 %\"\n[intervals]\nbootstrap = 0\nprofile = false\n";
+    let kept_back =
+        "[[targets]]\nfile = \"b.csv\"\nname = \"later\"\nfit = false\nsample_share = \"100 %\"\n";
+    let run = |name: &str, text: &str| {
+        let path = at(&format!("{name}.toml"));
+        fs::write(&path, text).unwrap();
+        let out = at(name);
+        let (code, told) = tune(&[path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        assert_eq!(code, 0, "{told}");
+        (summary(&out)["tuning"].clone(), out)
+    };
+    let stated = case.replace("laws = [\"R2\"]", "laws = [\"R2\"]\nmass_loss = 0.3");
+    let (alone, _) = run("alone", &stated);
+    let (both, out) = run("both", &(stated.clone() + kept_back));
+    for key in ["parameters", "objectives", "evaluations"] {
+        assert_eq!(alone[key], both[key], "{key}");
+    }
+    let text = fs::read_to_string(out.join("curves.csv")).unwrap();
+    let rows = text.lines().filter(|line| line.starts_with("later,"));
+    let pairs: Vec<[f64; 2]> = rows
+        .map(|line| {
+            let mut ends = line.rsplit(',').map(|word| word.parse().unwrap());
+            [ends.next().unwrap(), ends.next().unwrap()]
+        })
+        .collect();
+    assert_eq!(pairs.len(), 160);
+    let relative = pairs.iter().map(|[m, x]| ((m - x) / x).abs()).sum::<f64>() / 160.0;
+    let reacting = pairs
+        .iter()
+        .filter(|[_, x]| (0.001..0.999).contains(&((1.0 - x) / 0.3)));
+    let largest = reacting
+        .map(|[m, x]| (m - x).abs() / 0.3)
+        .fold(0.0, f64::max);
+    let errors = &both["curves"];
+    assert_eq!(errors[0]["fitted"], true);
+    assert!(errors[0]["largest_error_of_loss"].as_f64().unwrap() < 1e-3);
+    assert_eq!(errors[1]["target"], "later");
+    assert_eq!(errors[1]["fitted"], false);
+    let of = |key: &str| errors[1][key].as_f64().unwrap();
+    assert!((of("mean_relative_error") - relative).abs() < 1e-12);
+    assert!((of("largest_error_of_loss") - largest).abs() < 1e-12);
+    // A later curve by 1 kJ/mol of 150: some 5 K at 10 K/min.
+    assert!((0.02..0.2).contains(&largest), "{largest}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("later (not fitted)"));
+    fs::write(
+        at("none.toml"),
+        stated.replace("file =", "fit = false\nfile ="),
+    )
+    .unwrap();
+    let (code, told) = calcine("check", &[at("none.toml").to_str().unwrap()]);
+    assert_eq!(code, 2, "{told}");
+    assert!(told.contains("no curve that is fitted"), "{told}");
 }
 
 fn tune(words: &[&str]) -> (i32, String) {

@@ -38,6 +38,17 @@ pub struct HeatBody {
     pub radiation: Option<BodyRadiation>,
 }
 
+impl HeatBody {
+    /// Area in m² of its surface to the gas, and the conductance in W/K to gas of a conductivity in W/m/K in the cells beside it, no
+    /// particle being there.
+    pub fn surface(&self, mesh: &Mesh, conductivity: f64) -> [f64; 2] {
+        let faces = faces_of(self, mesh);
+        let area = faces.iter().map(|face| face.area).sum();
+        let each = faces.iter().map(|face| face.conductance(conductivity));
+        [area, each.sum()]
+    }
+}
+
 /// A patch that is the surface of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPatch {
@@ -67,6 +78,13 @@ struct BodyFace {
     /// Distance in m of the cell's centre from the plane of the face.
     distance: f64,
     film: Option<f64>,
+}
+
+impl BodyFace {
+    /// K_f in W/K: the film and half a cell of gas of a conductivity in W/m/K in series.
+    fn conductance(&self, conductivity: f64) -> f64 {
+        self.area / (self.distance / conductivity + self.film.map_or(0.0, f64::recip))
+    }
 }
 
 /// The heat that bodies took in an attempt, for the ledger.
@@ -169,8 +187,7 @@ impl HeatBodies {
                 let cell = face.cell;
                 let composition = &gas.composition[cell * species..(cell + 1) * species];
                 let conductivity = model.conductivity(gas.temperature[cell], composition);
-                let gas = face.distance / (bed.void_fraction[cell] * conductivity);
-                *own = face.area / (gas + face.film.map_or(0.0, f64::recip));
+                *own = face.conductance(bed.void_fraction[cell] * conductivity);
             }
         }
     }

@@ -24,7 +24,7 @@ use calcine_coupler::physics::parcels::{CollisionTimes, HarrisCrighton};
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::turbulence::NoBedEddies;
 use calcine_coupler::physics::{Vec3, sphere};
-use calcine_coupler::setup::{GasPatch, Schedule};
+use calcine_coupler::setup::{Convection, GasPatch, Schedule};
 use calcine_coupler::smoother::{Smoother, SmootherSettings};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks, Window};
@@ -273,6 +273,7 @@ fn plan(results: &Path) -> Plan {
         breaks: Vec::new(),
         jumps: Vec::new(),
         time_scheme: Default::default(),
+        convection: Convection::default(),
         gas_reacts: false,
         acceleration: Acceleration::constant(1.0).unwrap(),
         storage: GasStorage::Process,

@@ -24,7 +24,7 @@ use calcine_coupler::physics::drag::{Drag, ErgunWenYu};
 use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, NoHeatTransfer};
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::turbulence::NoBedEddies;
-use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::setup::{Convection, ParticleSetup};
 use calcine_coupler::smoother::{Smoother, SmootherSettings};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks, Window};
@@ -227,6 +227,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         breaks: Vec::new(),
         jumps: Vec::new(),
         time_scheme: Default::default(),
+        convection: Convection::default(),
         gas_reacts: false,
         acceleration: Acceleration::constant(1.0).unwrap(),
         storage: GasStorage::Process,

@@ -25,6 +25,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         breaks,
         jumps,
         time_scheme: case.gas.controls.time_scheme,
+        convection: case.gas.controls.convection,
         gas_reacts: case.gas.chemistry.reacting().is_some(),
         acceleration: case.time.acceleration.clone(),
         storage: case.time.storage,

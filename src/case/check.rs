@@ -18,7 +18,7 @@ use super::model::{Case, MeshSpec, PlacementSpec, Population, TimeSpec};
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::units::{short, short3};
-use super::{boundaries, buoyancy, mesh_shape, resolved, sizes, span, work};
+use super::{bodies, boundaries, buoyancy, mesh_shape, resolved, sizes, span, work};
 
 /// Most names of columns in a line.
 const COLUMNS: usize = 12;
@@ -188,6 +188,10 @@ pub fn check_report(
     };
     if let Some(fastest) = FastestContact::of(case, setup, mesh.periodicity()) {
         let _ = writeln!(text, "  {}", fastest.line());
+    }
+    for (row, line) in bodies::lines(case, mesh).iter().enumerate() {
+        let head = if row == 0 { "bodies" } else { "" };
+        let _ = writeln!(text, "  {head:<14} {line}");
     }
     for warning in &case.warnings {
         let _ = writeln!(text, "  warning: {warning}");

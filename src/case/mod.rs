@@ -1,6 +1,7 @@
 //! Case files: TOML to a checked [`model::Case`].
 
 mod bed;
+mod bodies;
 mod boundaries;
 pub mod buoyancy;
 pub mod cautions;

@@ -10,7 +10,7 @@ use calcine_coupler::physics::sphere;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasPatch;
 
-use super::model::{Case, Inside, Population};
+use super::model::{Case, Inside, Population, SizeLaw};
 use super::units::short3;
 
 /// Lines of `check` about a population.
@@ -56,6 +56,58 @@ pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
         }));
     }
     all
+}
+
+/// Reactions whose solids would fill a particle before what they use up is gone.
+pub(super) fn warnings(case: &Case) -> Vec<String> {
+    let materials = case.materials.iter().enumerate();
+    let resolved = materials.filter(|(_, one)| one.inside != Inside::Thin);
+    let reactions = &case.chemistry.reactions;
+    let each = resolved.flat_map(|(m, _)| reactions.iter().map(move |one| (m, one)));
+    each.filter_map(|(material, reaction)| {
+        let full = closing(case, material, reaction)?;
+        Some(format!(
+            "`{}` makes solids that take more room than what it uses up: in `{}` the pores are full at a conversion of {}, where gas \
+             no longer passes and the run ends; check the true densities, lower `density`, or let particles grow (`size`)",
+            reaction.name,
+            case.materials[material].name,
+            short3(full)
+        ))
+    })
+    .collect()
+}
+
+/// The conversion at which the solids of a reaction fill the particles of a material, from its start and by the reaction alone; `None`
+/// where some room stays.
+fn closing(case: &Case, material: usize, reaction: &Reaction) -> Option<f64> {
+    let spec = &case.materials[material];
+    let start = case.chemistry.compositions.get(material)?;
+    let true_density = case.chemistry.true_densities.get(material)?;
+    let molar_mass = |s: usize| case.chemistry.solids[s].molar_mass();
+    // Per volume of a particle at the start.
+    let used = reaction.solids.iter().filter(|one| one.1 < 0.0);
+    let lasting = used.map(|&(s, n)| spec.density * start[s] / (molar_mass(s) * -n));
+    let all = lasting
+        .reduce(f64::min)
+        .filter(|moles| *moles > 0.0 && !reaction.gases.is_empty())?;
+    let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
+        let each = reaction.solids.iter().map(|&(s, n)| n * of(s));
+        all * each.sum::<f64>()
+    };
+    let filled: f64 = start
+        .iter()
+        .zip(true_density)
+        .map(|(y, rho)| spec.density * y / rho)
+        .sum();
+    let fills = sum(&|s| molar_mass(s) / true_density[s]);
+    let grows = match &spec.size {
+        SizeLaw::Constant => 0.0,
+        SizeLaw::ConstantDensity { .. } => sum(&molar_mass) / spec.density,
+        SizeLaw::Densities { .. } => return None,
+    };
+    // filled + X fills = 1 + X grows.
+    let full = (1.0 - filled) / (fills - grows);
+    (fills > grows && full < 1.0).then_some(full)
 }
 
 /// R √(r/(D c)) of a reaction forwards, nothing having reacted, at the hottest temperature in K of the gas that comes in: r in
@@ -132,4 +184,25 @@ fn thiele(
     let first = lasting.reduce(f64::min).unwrap_or(moles);
     let number = radius * (rate / (diffusivity * first)).sqrt();
     number.is_finite().then_some((number, kelvin))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::warnings::tests::warned;
+
+    /// Lime of a true density of 1300 kg/m³ takes 1.052 of the volume of the limestone that it is made of, of whose volume 0.1 are
+    /// pores: 0.1/(1.0516 − 0.9000) = 0.66.
+    #[test]
+    fn pores_that_solids_fill_are_told() {
+        let told = |density: &str| {
+            let set = format!("materials.limestone.radial.true_densities.CaO={density}");
+            let all = warned("porous-stones", &[&set]);
+            all.into_iter()
+                .find(|one| one.contains("the pores are full"))
+        };
+        assert_eq!(told("3340 kg/m^3"), None);
+        assert_eq!(told("1400 kg/m^3"), None);
+        let full = told("1300 kg/m^3").unwrap();
+        assert!(full.contains("a conversion of 0.66,"), "{full}");
+    }
 }

@@ -11,7 +11,7 @@ use super::model::Case;
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::{
-    buoyancy, contacts, flow_time, idle_cautions, mesh_shape, overlap, patch_cautions,
+    buoyancy, contacts, flow_time, idle_cautions, mesh_shape, overlap, patch_cautions, resolved,
     size_cautions, temperature_cautions,
 };
 
@@ -38,6 +38,7 @@ pub fn warnings(
     all.extend(overlap::deepest(case, setup, mesh.periodicity()));
     all.extend(patch_cautions::columns(case, mesh));
     all.extend(size_cautions::pores(case));
+    all.extend(resolved::warnings(case));
     all.extend(size_cautions::wide_mesh(mesh, setup));
     all.extend(mesh_shape::report(mesh).1);
     all.extend(contacts::warnings(case, mesh, setup));

@@ -308,6 +308,14 @@ pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
             );
         }
     }
+    for target in &case.kept_back {
+        text += &format!(
+            "    target {}: kept back, {} times at {:.3} K/min\n",
+            target.name,
+            target.run.times.len(),
+            60.0 * target.run.programme.heating_rate()
+        );
+    }
     let laws = case.model.laws.iter().map(|one| one.law.name);
     text += &format!("    laws: {}\n", laws.collect::<Vec<_>>().join(", "));
     if let [only] = &case.model.reactions[..] {

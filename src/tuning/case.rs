@@ -32,8 +32,10 @@ pub struct TuningCase {
     pub model: SampleSpec,
     /// The parameters.
     pub parameters: Vec<TunedParameter>,
-    /// The curves.
+    /// The curves that are fitted.
     pub targets: Vec<TargetCurve>,
+    /// Curves that the tuned model is compared with.
+    pub kept_back: Vec<TargetCurve>,
     /// What the masses of each curve are relative to, where it has any.
     pub starts: Vec<Option<MassAtStart>>,
     /// Share of the sample that a conversion of one takes away: as stated, else that of the curves.

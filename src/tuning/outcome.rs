@@ -47,7 +47,9 @@ pub struct FittedCurve {
     /// Name of the target.
     pub target: String,
     /// What is compared.
-    pub quantity: String,
+    pub quantity: ComparedQuantity,
+    /// False of a curve that is kept back from the fit.
+    pub is_fitted: bool,
     /// Unit of the values.
     pub unit: String,
     /// Times in s.
@@ -58,6 +60,40 @@ pub struct FittedCurve {
     pub measured: Vec<f64>,
     /// The model's.
     pub model: Vec<f64>,
+}
+
+/// How near the model comes to a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveErrors {
+    /// Mean of the differences over the measured values, without signs; none where a measured value is zero.
+    pub mean_relative: Option<f64>,
+    /// Root mean square of the differences, in the curve's unit.
+    pub root_mean_square: f64,
+    /// Of a mass: largest difference over its whole loss, where the conversion is between 0.001 and 0.999.
+    pub largest_of_loss: Option<f64>,
+}
+
+/// Conversions between which a sample reacts.
+const REACTING: [f64; 2] = [0.001, 0.999];
+
+impl FittedCurve {
+    /// Errors of the curve; `loss` is the share of the sample that a conversion of one takes away.
+    pub fn errors(&self, loss: f64) -> CurveErrors {
+        let pairs = || self.measured.iter().zip(&self.model);
+        let count = self.measured.len().max(1) as f64;
+        let relative: f64 = pairs().map(|(x, m)| ((m - x) / x).abs()).sum();
+        let squares: f64 = pairs().map(|(x, m)| (m - x).powi(2)).sum();
+        let reacting = pairs().filter(|(x, _)| {
+            let conversion = (1.0 - **x) / loss;
+            REACTING[0] < conversion && conversion < REACTING[1]
+        });
+        let largest = reacting.map(|(x, m)| (m - x).abs() / loss).reduce(f64::max);
+        CurveErrors {
+            mean_relative: Some(relative / count).filter(|error| error.is_finite()),
+            root_mean_square: (squares / count).sqrt(),
+            largest_of_loss: largest.filter(|_| self.quantity == ComparedQuantity::Mass),
+        }
+    }
 }
 
 /// Energies without a law.

@@ -43,6 +43,11 @@ pub fn write_page(
         &fitted(found, false),
     );
     page.section(
+        "Errors of the curves",
+        "Of the mass where it reacts: the largest difference as a share of its whole loss, at conversions of 0.001 to 0.999.",
+        &errors(case, found),
+    );
+    page.section(
         "Differences",
         "Model less measurement, over time.",
         &fitted(found, true),
@@ -176,13 +181,37 @@ fn laws(found: &TuningOutcome) -> String {
     )
 }
 
+/// A row each curve.
+fn errors(case: &TuningCase, found: &TuningOutcome) -> String {
+    let share = |value: Option<f64>| value.map_or("–".into(), |it| figure(100.0 * it, 3));
+    let rows = found.curves.iter().map(|one| {
+        let errors = one.errors(case.loss);
+        vec![
+            escape(&one.target),
+            one.quantity.name().replace('_', " "),
+            if one.is_fitted { "yes" } else { "no" }.into(),
+            format!("{} {}", figure(errors.root_mean_square, 3), one.unit),
+            share(errors.mean_relative),
+            share(errors.largest_of_loss),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    table(
+        &[
+            "curve",
+            "quantity",
+            "fitted",
+            "#root mean square",
+            "#mean relative error, %",
+            "#of the mass where it reacts, %",
+        ],
+        &rows,
+    )
+}
+
 /// A plot each compared quantity.
 fn fitted(found: &TuningOutcome, differences: bool) -> String {
-    let mut names: Vec<&str> = found
-        .curves
-        .iter()
-        .map(|one| one.quantity.as_str())
-        .collect();
+    let mut names: Vec<&str> = found.curves.iter().map(|one| one.quantity.name()).collect();
     names.dedup();
     names.sort_unstable();
     names.dedup();
@@ -191,7 +220,7 @@ fn fitted(found: &TuningOutcome, differences: bool) -> String {
         let own: Vec<&FittedCurve> = found
             .curves
             .iter()
-            .filter(|one| one.quantity == name)
+            .filter(|one| one.quantity.name() == name)
             .collect();
         let unit = own.first().map_or("", |one| one.unit.as_str());
         let over_temperature = !differences
@@ -223,11 +252,15 @@ fn fitted(found: &TuningOutcome, differences: bool) -> String {
                 y,
                 stroke,
             };
+            let label = match one.is_fitted {
+                true => one.target.clone(),
+                false => format!("{} (not fitted)", one.target),
+            };
             if differences {
-                curves.push(curve(one.target.clone(), &off[k], Stroke::Solid));
+                curves.push(curve(label, &off[k], Stroke::Solid));
             } else {
                 curves.push(curve(String::new(), &one.measured, Stroke::Points));
-                curves.push(curve(one.target.clone(), &one.model, Stroke::Solid));
+                curves.push(curve(label, &one.model, Stroke::Solid));
             }
         }
         let title = match (differences, unit) {

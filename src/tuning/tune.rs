@@ -12,7 +12,9 @@ use calcine_tuning::nsga::VariationSettings;
 use calcine_tuning::search::{
     FrontSettings, SearchEvaluation, SearchedFront, StartSettings, fit_globally, search_front,
 };
-use calcine_tuning::{ComparedQuantity, ParameterSpace, SampleProblem, TuningError, TuningProblem};
+use calcine_tuning::{
+    ComparedQuantity, ParameterSpace, SampleProblem, TargetCurve, TuningError, TuningProblem,
+};
 
 use super::case::{LawCandidate, TuningCase};
 use super::outcome::{
@@ -294,16 +296,16 @@ fn percentiles(drawn: &[Vec<f64>], parameter: usize, level: f64) -> Option<[f64;
     Some([at(tail), at(1.0 - tail)])
 }
 
-/// The problem of a sample with one of its laws.
-fn problem_of(case: &TuningCase, candidate: &LawCandidate) -> Result<SampleProblem, TuningError> {
+/// The problem of a sample with one of its laws, and curves.
+fn problem_of(
+    case: &TuningCase,
+    candidate: &LawCandidate,
+    targets: &[TargetCurve],
+) -> Result<SampleProblem, TuningError> {
     let model = case.model.model(candidate);
     let space = case.space_of(&*model)?;
-    let mut problem = SampleProblem::new(
-        &*model,
-        space,
-        case.targets.clone(),
-        case.method.differences,
-    )?;
+    let mut problem =
+        SampleProblem::new(&*model, space, targets.to_vec(), case.method.differences)?;
     if let [only] = &case.model.reactions[..]
         && only.name.is_empty()
     {
@@ -326,7 +328,7 @@ pub fn tune_sample(
     };
     let mut fits = Vec::new();
     for candidate in &case.model.laws {
-        let problem = problem_of(case, candidate)?;
+        let problem = problem_of(case, candidate, &case.targets)?;
         observer.stage(&format!("law {}", candidate.law.name));
         let search = bench.search(&problem, candidate.law.name, observer)?;
         fits.push((candidate.law.name, problem, search));
@@ -376,6 +378,11 @@ pub fn tune_sample(
     warnings.extend(warn::one_rate(case, &laws, chosen, &known.found));
     warnings.extend(warn::energies_differ(&energies, &known.found));
     problem.differences(&search.fitted.places, &mut out)?;
+    let mut all_curves = curves(&problem, &search.fitted.places, true)?;
+    if !case.kept_back.is_empty() {
+        let others = problem_of(case, &case.model.laws[chosen], &case.kept_back)?;
+        all_curves.extend(curves(&others, &search.fitted.places, false)?);
+    }
     Ok(TuningOutcome {
         objectives: problem.objectives().to_vec(),
         sums: out
@@ -385,7 +392,7 @@ pub fn tune_sample(
         counts: out.iter().map(Vec::len).collect(),
         laws,
         chosen,
-        curves: curves(&problem, &search.fitted.places)?,
+        curves: all_curves,
         space: problem.space().clone(),
         parameters: known.found,
         front: search.front,
@@ -397,7 +404,12 @@ pub fn tune_sample(
     })
 }
 
-fn curves(problem: &SampleProblem, places: &[f64]) -> Result<Vec<FittedCurve>, TuningError> {
+/// The curves of a problem, and the model's; whether they were fitted.
+fn curves(
+    problem: &SampleProblem,
+    places: &[f64],
+    is_fitted: bool,
+) -> Result<Vec<FittedCurve>, TuningError> {
     let responses = problem.responses(places)?;
     let mut all = Vec::new();
     for (target, response) in problem.targets().iter().zip(&responses) {
@@ -410,7 +422,8 @@ fn curves(problem: &SampleProblem, places: &[f64]) -> Result<Vec<FittedCurve>, T
             let times = &target.run.times;
             all.push(FittedCurve {
                 target: target.name.clone(),
-                quantity: quantity.name().to_owned(),
+                quantity: *quantity,
+                is_fitted,
                 unit: unit_of(*quantity).to_owned(),
                 time: times.clone(),
                 temperature: times

@@ -95,6 +95,18 @@ fn tuning(case: &TuningCase, found: &TuningOutcome) -> Value {
             json!({ "value": sum, "values": count, "rms": rms }),
         );
     }
+    let curves = found.curves.iter().map(|one| {
+        let errors = one.errors(case.loss);
+        json!({
+            "target": one.target,
+            "quantity": one.quantity.name(),
+            "unit": one.unit,
+            "fitted": one.is_fitted,
+            "rms": errors.root_mean_square,
+            "mean_relative_error": errors.mean_relative,
+            "largest_error_of_loss": errors.largest_of_loss,
+        })
+    });
     let names = |k: usize| found.space.parameters()[k].name.clone();
     let laws = found.laws.iter().map(|one| {
         let values: Map<String, Value> = one
@@ -121,6 +133,7 @@ fn tuning(case: &TuningCase, found: &TuningOutcome) -> Value {
         "law": found.laws.get(found.chosen).map(|one| one.law),
         "parameters": parameters,
         "objectives": objectives,
+        "curves": curves.collect::<Vec<_>>(),
         "level": case.intervals.level,
         "laws": laws.collect::<Vec<_>>(),
         "correlated": pairs.collect::<Vec<_>>(),
@@ -153,7 +166,7 @@ fn curves(found: &TuningOutcome) -> String {
     for curve in &found.curves {
         let (target, quantity, unit) = (
             field(&curve.target),
-            field(&curve.quantity),
+            curve.quantity.name(),
             field(&curve.unit),
         );
         for k in 0..curve.time.len() {

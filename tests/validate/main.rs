@@ -57,6 +57,7 @@ mod square_cylinder;
 #[path = "../support/stopped.rs"]
 #[allow(dead_code)]
 mod stopped;
+mod tg_furnace;
 mod voids;
 
 use std::path::{Path, PathBuf};
@@ -97,6 +98,7 @@ const ALL: &[(&str, fn())] = &[
     ("slurm", slurm::run),
     ("spouted-bed", spouted_bed::run),
     ("square-cylinder", square_cylinder::run),
+    ("tg-furnace", tg_furnace::run),
     ("voids", voids::run),
 ];
 

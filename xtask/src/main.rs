@@ -59,7 +59,7 @@ usage: cargo xtask TASK
                           checkpoint-faults, elastic-box, external-restarts, flame,
                           fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, repose, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, slurm,
-                          spouted-bed, square-cylinder, voids";
+                          spouted-bed, square-cylinder, tg-furnace, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;

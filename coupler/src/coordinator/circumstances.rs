@@ -5,6 +5,7 @@ use super::error::RunError;
 use crate::error::FailureKind;
 use crate::mesh::quality::InCell;
 use crate::part::Gas as _;
+use crate::setup::Convection;
 use crate::time::Window;
 
 /// Courant number up to which both gases were tried on cells that lean by up to 65 degrees (docs/verification.md).
@@ -20,7 +21,12 @@ impl CoupledRun {
             RunError::Part(part)
                 if matches!(part.kind, FailureKind::Diverged | FailureKind::NotFinite) =>
             {
-                let lines = [self.courant(window), self.leaning(), self.reacting()];
+                let lines = [
+                    self.courant(window),
+                    self.leaning(),
+                    self.unbounded(),
+                    self.reacting(),
+                ];
                 RunError::Part(part.under(lines.into_iter().flatten().collect()))
             }
             RunError::Closure { .. }
@@ -68,6 +74,16 @@ impl CoupledRun {
                 span * TRIED_COURANT / largest.value
             ),
             false => found,
+        })
+    }
+
+    /// That no limiter bounds what the gas carries, where it is so.
+    fn unbounded(&self) -> Option<String> {
+        matches!(self.plan.convection, Convection::Central(share) if share > 0.0).then(|| {
+            String::from(
+                "`gas.controls.convection` is central: nothing bounds what it carries, nor damps waves from cell to cell; \
+                 \"van-leer\" and \"upwind\" do",
+            )
         })
     }
 

@@ -11,7 +11,7 @@ use crate::hold::Holds;
 use crate::mapping::Method;
 use crate::motion::LostParticles;
 use crate::paths::PathsSetup;
-use crate::setup::TimeScheme;
+use crate::setup::{Convection, TimeScheme};
 use crate::time::{Acceleration, GasStorage, Ticks};
 use crate::window_control::WindowBounds;
 use crate::window_drag::WindowDrag;
@@ -33,6 +33,8 @@ pub struct Plan {
     pub jumps: Vec<Ticks>,
     /// How the case wants the gas stepped where its clocks are one.
     pub time_scheme: TimeScheme,
+    /// How the case wants the gas carried to faces.
+    pub convection: Convection,
     /// True where gas reacts with itself.
     pub gas_reacts: bool,
     /// Acceleration factor over process time.

@@ -33,7 +33,7 @@ const RADIAL: &[Key] = &[
     key("permeability", Law(laws::permeability, &[]), Without("required where reactions exchange gas"), "Permeability to gas that flows by pressure.", "{ law = \"constant\", value = \"1e-15 m^2\" }"),
     key("conduction", Law(laws::porous_conductivity, &[]), Without("the material's conductivity is that of its particles"), "How the material's conductivity and the pores make that of a particle.", "{ law = \"parallel\" }"),
     key("temperature_error", Number(D::TEMPERATURE, Positive), Default("1 K"), "Error of the mean temperature in a step within a window.", "\"0.1 K\""),
-    key("conversion_error", Number(D::NONE, Positive), Default("1e-3"), "Error of what reactions turn over in such a step, as a share of the particle's solids.", "1e-4"),
+    key("conversion_error", Number(D::NONE, Within(0.0, 1.0)), Default("1e-3"), "Error of what reactions turn over in such a step, as a share of the particle's solids.", "1e-4"),
     key("turn_temperature", Number(D::TEMPERATURE, Positive), Default("5 K"), "With `auto`: difference of temperature between centre and surface from which on a particle has its shells.", "\"1 K\""),
     key("turn_pressure", Number(D::NONE, Positive), Default("0.05"), "With `auto`: the same of the partial pressure of a gas, as a share of its own at the surface where it goes in, and of the pressure where it comes out.", "0.02"),
 ];

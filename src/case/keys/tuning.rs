@@ -70,6 +70,7 @@ const TARGETS: &[Key] = &[
     key("sample_share", Number(D::NONE, Between(0.2, 1.5)), Without("the mean of the first values of the file, before it falls"), "Value at the start, which masses in % are relative to: 100 % where the instrument took it from the mass at the start. Where it is not stated, the scale of the curve is fitted.", "\"100 %\""),
     key("heating_rate", Number(HEATING_RATE, Positive), Without("the temperatures of the file"), "Constant heating rate of the furnace.", "\"15 K/min\""),
     key("start_temperature", Number(D::TEMPERATURE, Positive), Default("293.15 K"), "Temperature at the first time, with `heating_rate`.", "\"20 degC\""),
+    key("fit", Truth, Default("true"), "Whether the parameters are fitted to it. With `false` it is kept back: the tuned model is compared with it afterwards.", "false"),
     key("conversion", Numbers(2), Without("all of the curve"), "Range of the conversion that counts.", "[0.001, 0.999]"),
     key("largest_rise", Number(D::NONE, Between(0.0, 10.0)), Default("5 %"), "Largest rise of the mass that is let pass, as a share of its whole fall.", "\"5 %\""),
 ];

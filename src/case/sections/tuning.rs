@@ -101,6 +101,7 @@ pub(in crate::case) fn tuning(
         parameters,
         files: read.files,
         targets: read.curves,
+        kept_back: read.kept_back,
         starts: read.starts,
         loss,
         method: method?,

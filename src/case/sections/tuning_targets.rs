@@ -18,12 +18,14 @@ use crate::tuning::warn;
 pub(super) struct Targets {
     /// Files that were read.
     pub files: Vec<PathBuf>,
-    /// Curves of all of them.
+    /// Curves that are fitted.
     pub curves: Vec<TargetCurve>,
+    /// Curves that the tuned model is compared with afterwards.
+    pub kept_back: Vec<TargetCurve>,
     /// What the masses of each curve are relative to.
     pub starts: Vec<Option<MassAtStart>>,
-    /// Range of the conversion that counts, of each curve.
-    ranges: Vec<Option<[f64; 2]>>,
+    /// Range of the conversion that counts, of each curve that is fitted and of each that is kept back.
+    ranges: [Vec<Option<[f64; 2]>>; 2],
     /// What is to be told of them.
     pub warnings: Vec<String>,
 }
@@ -45,14 +47,22 @@ impl Targets {
                 {
                     read.warnings.push(warn::weighs_no_share(&start.unit));
                 }
-                read.curves.push(curve);
-                read.starts.push(start);
-                read.ranges.push(target.conversion);
+                if target.fit {
+                    read.curves.push(curve);
+                    read.starts.push(start);
+                } else {
+                    read.kept_back.push(curve);
+                }
+                read.ranges[usize::from(!target.fit)].push(target.conversion);
             }
             table.finish();
         }
+        if read.curves.is_empty() && !read.kept_back.is_empty() {
+            let help = "remove `fit = false` from at least one of them";
+            root.fail("targets", "has no curve that is fitted", help);
+        }
         let mut names: Vec<String> = Vec::new();
-        for curve in &mut read.curves {
+        for curve in read.curves.iter_mut().chain(&mut read.kept_back) {
             let mut name = curve.name.clone();
             while names.contains(&name) {
                 name.push('\'');
@@ -65,7 +75,9 @@ impl Targets {
 
     /// Counts what lies within the ranges of conversions, of the loss that goes with a conversion of one.
     pub fn count(&mut self, loss: f64) {
-        for (curve, range) in self.curves.iter_mut().zip(&self.ranges) {
+        let [fitted, kept_back] = &self.ranges;
+        let all = self.curves.iter_mut().zip(fitted);
+        for (curve, range) in all.chain(self.kept_back.iter_mut().zip(kept_back)) {
             if let Some([low, high]) = *range {
                 curve.count_within(low, high, loss);
             }
@@ -84,6 +96,7 @@ struct Target<'t, 'a> {
     heating_rate: Option<f64>,
     start_temperature: Option<f64>,
     conversion: Option<[f64; 2]>,
+    fit: bool,
     lumped: bool,
 }
 
@@ -131,6 +144,7 @@ impl<'t, 'a> Target<'t, 'a> {
             heating_rate,
             start_temperature: table.number("start_temperature"),
             conversion: range(table),
+            fit: table.truth("fit").unwrap_or(true),
             lumped: false,
             table,
         }

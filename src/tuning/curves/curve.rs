@@ -196,12 +196,15 @@ impl Columns {
         let others = [&self.temperature, &self.mass, &self.rate]
             .into_iter()
             .flatten();
-        if let Some(k) = others.chain([&self.time]).find_map(finite) {
-            return wrong(
-                k,
-                "a number is too large for any unit".into(),
-                "correct the row",
-            );
+        if let Some((k, found)) = others
+            .chain([&self.time])
+            .find_map(|found| Some((finite(found)?, found)))
+        {
+            let fact = match sheet.rows[rows[k]][found.place].is_nan() {
+                true => format!("column {} has NaN", found.place + 1),
+                false => "a number is too large for any unit".into(),
+            };
+            return wrong(k, fact, "correct or remove the row");
         }
         let written = |k: usize, found: &FoundColumn| sheet.rows[rows[k]][found.place];
         let since: Vec<f64> = time.iter().map(|t| t - time[0]).collect();

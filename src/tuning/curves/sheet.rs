@@ -116,8 +116,11 @@ fn latin_or_utf8(bytes: &[u8]) -> String {
     }
 }
 
-/// A number as the file writes it.
+/// A number as the file writes it; not a number where it says so, as in columns of a run that begin later.
 fn number(field: &str, decimal_comma: bool) -> Option<f64> {
+    if field.eq_ignore_ascii_case("nan") {
+        return Some(f64::NAN);
+    }
     let plain = match decimal_comma {
         true if field.contains('.') => return None,
         true => field.replace(',', "."),
@@ -424,6 +427,14 @@ mod tests {
         assert_eq!(sheet.headings, ["Time", "Temperature", "Weight"]);
         assert_eq!(sheet.units, ["min", "°C", "mg"]);
         assert_eq!((sheet.heading_line, sheet.lines[0]), (Some(4), 6));
+    }
+
+    /// As in the series of a run, whose columns may begin later.
+    #[test]
+    fn other_columns_may_have_no_numbers() {
+        let text = "t,T,m,e\n1,2,3,NaN\n2,2,3,nan\n".to_owned() + &"3,2,3,1\n".repeat(6);
+        let sheet = read(&text).unwrap();
+        assert_eq!((sheet.rows.len(), sheet.lines[0]), (8, 2));
     }
 
     #[test]

@@ -107,7 +107,7 @@ pub static NUCLEATION: LawEntry<RateLaw> = LawEntry {
         LawParameter {
             name: "nuclei",
             dimension: Dimension::NONE,
-            bound: Bound::Positive,
+            bound: Bound::Within(0.0, 1.0),
             default: Some(1e-3),
             needed_with: None,
             meaning: "Share of the solid that nuclei hold at the start: without any nothing would begin.",
