@@ -191,7 +191,7 @@ mod tests {
     use crate::case::warnings::tests::warned;
 
     /// Lime of a true density of 1300 kg/m³ takes 1.052 of the volume of the limestone that it is made of, of whose volume 0.1 are
-    /// pores: 0.1/(1.0516 − 0.9000) = 0.66.
+    /// pores: 0.1/(1.0516 − 0.9000) = 0.659.
     #[test]
     fn pores_that_solids_fill_are_told() {
         let told = |density: &str| {
@@ -203,6 +203,6 @@ mod tests {
         assert_eq!(told("3340 kg/m^3"), None);
         assert_eq!(told("1400 kg/m^3"), None);
         let full = told("1300 kg/m^3").unwrap();
-        assert!(full.contains("a conversion of 0.66,"), "{full}");
+        assert!(full.contains("a conversion of 0.659,"), "{full}");
     }
 }

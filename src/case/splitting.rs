@@ -140,13 +140,20 @@ impl<'a> Splitting<'a> {
                 "R, gas heat stored over solid heat stored times AF   {:.4}{matters}",
                 self.ratio
             ),
-            format!(
-                "0.18 hA AF dt/(m c), error of process storage       {:.2e}{}",
-                self.error,
-                above(self.error)
-            ),
+            // Shells follow the gas by steps of their own within the window.
+            match self.resolved {
+                true => format!(
+                    "hA AF dt/(m c), window over the time of the film     {:.2e}",
+                    self.error / STEP_ERROR
+                ),
+                false => format!(
+                    "0.18 hA AF dt/(m c), error of process storage       {:.2e}{}",
+                    self.error,
+                    above(self.error)
+                ),
+            },
         ];
-        lines.extend(self.radiation.map(|error| {
+        lines.extend(self.radiation.filter(|_| !self.resolved).map(|error| {
             format!(
                 "0.18 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
                 above(error)
@@ -182,19 +189,21 @@ impl<'a> Splitting<'a> {
                 short3(self.ratio)
             ));
         }
-        if self.error > 1.0 {
-            all.push(format!(
-                "0.18 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: its temperature takes that of the gas within a fraction of a window, so \
-                 that its way there is not resolved; {step}",
-                short3(self.error)
-            ));
-        } else if self.error > WARNING {
-            all.push(format!(
-                "0.18 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: within a window its temperature comes so far towards that of \
-                 the gas that the error is this share of their difference; {step}",
-                short3(self.error)
-            ));
-        }
+        let error = Some(self.error).filter(|error| *error > WARNING && !self.resolved);
+        all.extend(error.map(|error| {
+            let way = match error > 1.0 {
+                true => {
+                    "its temperature takes that of the gas within a fraction of a window, so that its way there is not resolved"
+                }
+                false => {
+                    "within a window its temperature comes so far towards that of the gas that the error is this share of their difference"
+                }
+            };
+            format!(
+                "0.18 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: {way}; {step}",
+                short3(error)
+            )
+        }));
         if let Some(biot) = self.biot.filter(|biot| *biot > WARNING && !self.resolved) {
             all.push(format!(
                 "the Biot number h d/(6 k) of `{name}` is {}, above {WARNING}: real particles of this size are colder inside than at their \
