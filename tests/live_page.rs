@@ -60,7 +60,8 @@ impl Watch {
     /// Head and body of an answer.
     fn ask(&self, first: &str, host: &str) -> (String, String) {
         let mut stream = TcpStream::connect(("127.0.0.1", self.1)).unwrap();
-        write!(stream, "{first} HTTP/1.1\r\nHost: {host}\r\n\r\n").unwrap();
+        let request = format!("{first} HTTP/1.1\r\nHost: {host}\r\n\r\n");
+        stream.write_all(request.as_bytes()).unwrap();
         let mut answer = Vec::new();
         stream.read_to_end(&mut answer).unwrap();
         let answer = String::from_utf8_lossy(&answer).into_owned();

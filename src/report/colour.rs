@@ -107,7 +107,7 @@ impl Range {
         let _ = write!(
             svg,
             "<text class=\"label\" x=\"{x}\" y=\"{}\">{label}</text></g>",
-            y - 10.0
+            y - 16.0
         );
         svg
     }

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use calcine_coupler::ledger::PRESCRIBED_HEAT;
+
 use super::colour;
 use super::number::{figure, span};
 use super::page::{escape, table};
@@ -12,21 +14,21 @@ use crate::results::flows::FlowAmount;
 /// Ways of energy and of mass by their names in the summary, and in words.
 const ENERGY: [(&str, &str); 9] = [
     ("boundary", "gas through the boundary"),
-    ("reservoir", "reservoir of the held gas"),
-    ("sources", "sources in the gas"),
-    ("walls", "walls and surroundings"),
-    ("prescribed", "prescribed temperatures"),
-    ("radiated", "surroundings of bodies"),
     ("particles", "particles, with reactions"),
-    ("gas_storage", "gas that is held up"),
-    ("body_storage", "bodies"),
+    ("gas_storage", "stored in the gas"),
+    ("walls", "walls and surroundings"),
+    ("sources", "sources in the gas"),
+    (PRESCRIBED_HEAT, "prescribed temperatures"),
+    ("reservoir", "reservoir of the held gas"),
+    ("radiated", "surroundings of bodies"),
+    ("body_storage", "stored in bodies"),
 ];
 const MASS: [(&str, &str); 5] = [
     ("boundary", "gas through the boundary"),
     ("reservoir", "reservoir of the held gas"),
     ("sources", "sources of gas"),
     ("particles", "particles to gas, gas to particles"),
-    ("storage", "gas that is held up"),
+    ("storage", "stored as gas"),
 ];
 /// Share of all below which a way is left out.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -173,7 +175,8 @@ fn sankey(ways: &[Way<'_>]) -> String {
         let (mut row, mut at) = ((height - rooms[number]) / 2.0, (height - all) / 2.0);
         for (words, value) in side {
             let (room, wide) = (ROW.max(thick(*value) + 8.0), thick(*value).max(0.8));
-            let (from, to) = (row + room / 2.0, at + thick(*value) / 2.0);
+            let (from, to) = (row + (room - wide) / 2.0, at);
+            let (from_end, to_end) = (from + wide, to + wide);
             let place = ENERGY.iter().position(|one| one.1 == *words).unwrap_or(0);
             let half = (edge + bar) / 2.0;
             let (anchor, x) = if left {
@@ -184,14 +187,14 @@ fn sankey(ways: &[Way<'_>]) -> String {
             // Writing to a String cannot fail.
             let _ = write!(
                 svg,
-                "<path fill=\"none\" stroke=\"{}\" stroke-opacity=\".55\" stroke-width=\"{wide:.1}\" \
-                 d=\"M{edge:.1} {from:.1}C{half:.1} {from:.1} {half:.1} {to:.1} {bar:.1} {to:.1}\"/>\
+                "<path fill=\"{}\" fill-opacity=\".55\" d=\"M{edge:.1} {from:.1}C{half:.1} {from:.1} {half:.1} {to:.1} {bar:.1} {to:.1}\
+                 V{to_end:.1}C{half:.1} {to_end:.1} {half:.1} {from_end:.1} {edge:.1} {from_end:.1}Z\"/>\
                  <text text-anchor=\"{anchor}\" x=\"{x:.1}\" y=\"{:.1}\">{}</text>\
                  <text class=\"label\" text-anchor=\"{anchor}\" x=\"{x:.1}\" y=\"{:.1}\">{}</text>",
                 colour::line(place),
-                from - 3.0,
+                row + room / 2.0 - 3.0,
                 escape(words),
-                from + 12.0,
+                row + room / 2.0 + 12.0,
                 power(*value)
             );
             row += room;
@@ -236,12 +239,23 @@ mod tests {
             way("particles, with reactions", 0.0, 25.0),
         ];
         let svg = sankey(&ways);
+        // From "M x top C …" to "… x bottom Z" at its outer end.
         let widths: Vec<f64> = svg
-            .split("stroke-width=\"")
+            .split(" d=\"M")
             .skip(1)
-            .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
+            .map(|rest| {
+                let path = rest.split('Z').next().unwrap();
+                let top = path.split([' ', 'C']).nth(1).unwrap();
+                let bottom = path.rsplit(' ').next().unwrap();
+                bottom.parse::<f64>().unwrap() - top.parse::<f64>().unwrap()
+            })
             .collect();
-        assert_eq!(widths, [THICK, 112.5, 37.5]);
+        let close = |(found, sought): (&f64, f64)| (found - sought).abs() < 0.11;
+        assert_eq!(widths.len(), 3);
+        assert!(
+            widths.iter().zip([THICK, 112.5, 37.5]).all(close),
+            "{widths:?}"
+        );
         assert!(svg.contains(">100 W<") && svg.contains(">75 W<") && svg.contains(">25 W<"));
         assert_eq!(sankey(&[way("bodies", 0.0, 0.0)]), "");
     }

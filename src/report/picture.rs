@@ -14,7 +14,7 @@ const HEIGHT: f64 = 460.0;
 const WIDEST: f64 = 1050.0;
 const BAR: f64 = 128.0;
 /// Room above for the label of the colour bar.
-const TOP: f64 = 26.0;
+const TOP: f64 = 36.0;
 
 /// Polygons and circles of all views together at most, where two views have not more.
 const SHAPES: usize = 8000;
@@ -115,7 +115,7 @@ fn draw(views: &[View], low: Spot, high: Spot, shade: Shade, range: Option<Range
     let scale = (HEIGHT / tall).min(room / wide);
     let (wide, tall) = (wide * scale, tall * scale);
     let column = wide.max(64.0) + gap;
-    let (width, height) = (column * views.len() as f64 + BAR, tall + 60.0);
+    let (width, height) = (column * views.len() as f64 + BAR, tall + 72.0);
     let mut svg = format!(
         "<figure class=\"picture\"><svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          role=\"img\" aria-label=\"Side views of bed and gas\">"
@@ -160,7 +160,7 @@ fn draw(views: &[View], low: Spot, high: Spot, shade: Shade, range: Option<Range
             "<rect class=\"hull\" x=\"{left:.1}\" y=\"{TOP}\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>\
              <text class=\"label\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             left + wide / 2.0,
-            tall + TOP + 22.0,
+            tall + TOP + 24.0,
             span(view.time)
         );
     }

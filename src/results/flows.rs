@@ -28,7 +28,7 @@ pub struct FlowSummary {
     pub over_s: f64,
     /// Gas mass in kg: `boundary`, `reservoir`, `sources`, `particles`, `storage`.
     pub mass_kg: BTreeMap<String, FlowAmount>,
-    /// Energy of gas and particles in J: `boundary`, `reservoir`, `sources`, `walls`, `prescribed`, `radiated`,
+    /// Energy of gas and particles in J: `boundary`, `reservoir`, `sources`, `walls`, `prescribed_heat`, `radiated`,
     /// `particles`, `gas_storage`, `body_storage`.
     pub energy_j: BTreeMap<String, FlowAmount>,
     /// Mass in kg of each species of a gas mixture through the boundary.

@@ -128,35 +128,36 @@ fn is_own(host: &str, port: u16) -> bool {
         .any(|name| host == format!("{name}:{port}") || port == 80 && host == *name)
 }
 
-/// `None` where it is none.
+/// Reads a head to its end, so that nothing is left unread where the answer closes the connection; `None` where it is none.
 fn request(stream: &TcpStream) -> io::Result<Option<Request>> {
-    let mut lines = BufReader::new(stream.take(HEAD)).lines();
-    let first = lines.next().transpose()?.unwrap_or_default();
-    let mut words = first.split_whitespace();
-    let (Some(method), Some(path), Some(version)) = (words.next(), words.next(), words.next())
-    else {
+    let lines = BufReader::new(stream.take(HEAD)).lines();
+    let mut head = Vec::new();
+    for line in lines {
+        let line = line?;
+        if line.is_empty() {
+            break;
+        }
+        head.push(line);
+    }
+    let mut head = head.iter();
+    let words: Vec<&str> = head
+        .next()
+        .map_or(Vec::new(), |first| first.split_whitespace().collect());
+    let [method, path, version] = words[..] else {
         return Ok(None);
     };
     if !version.starts_with("HTTP/1.") {
         return Ok(None);
     }
-    let mut host = String::new();
-    for line in lines {
-        let line = line?;
-        if line.is_empty() {
-            return Ok(Some(Request {
-                method: method.into(),
-                path: path.into(),
-                host,
-            }));
-        }
-        if let Some((name, value)) = line.split_once(':')
-            && name.eq_ignore_ascii_case("host")
-        {
-            value.trim().clone_into(&mut host);
-        }
-    }
-    Ok(None)
+    let named = head.filter_map(|line| line.split_once(':'));
+    let mut hosts = named.filter(|(name, _)| name.eq_ignore_ascii_case("host"));
+    Ok(Some(Request {
+        method: method.into(),
+        path: path.into(),
+        host: hosts
+            .next()
+            .map_or(String::new(), |(_, host)| host.trim().into()),
+    }))
 }
 
 #[cfg(test)]

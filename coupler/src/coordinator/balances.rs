@@ -9,7 +9,7 @@ use super::exchange::ExchangeStage;
 use super::particles::MotionStage;
 use crate::bodies::BodyBalance;
 use crate::flows::{TwoWayFlow, WindowFlows};
-use crate::ledger::Ledger;
+use crate::ledger::{Ledger, PRESCRIBED_HEAT};
 use crate::part::{Balance, CellReceived, ParticleFields};
 use crate::time::{GasStorage, Window};
 
@@ -158,7 +158,7 @@ impl WindowBalances<'_> {
             ("reservoir", way(scale * gas.reservoir)),
             ("sources", way(scale * gas.source)),
             ("walls", through_walls),
-            ("prescribed", way(self.supplied.sum)),
+            (PRESCRIBED_HEAT, way(self.supplied.sum)),
             ("radiated", way(bodies.radiated)),
             ("particles", way(-(changes.sum + scale * formed))),
             ("gas_storage", way(-scale * gas.stored)),
