@@ -17,3 +17,4 @@ pub mod simulation;
 pub mod tuning;
 pub mod valid;
 mod vtk_xml;
+pub mod watch;

@@ -14,6 +14,10 @@ use std::process::{Command, Output};
 /// Commands, by a part of them, that are parsed only, with the reason.
 const ONLY_PARSED: &[(&str, &str)] = &[
     (
+        "calcine watch",
+        "shows a run until Ctrl-C, as tests/live_page.rs does",
+    ),
+    (
         "cargo xtask",
         "installs packages and builds; `cargo xtask test` itself runs this",
     ),

@@ -36,6 +36,7 @@ mod isomers;
 mod laws;
 mod liggghts_script;
 mod limiters;
+mod live_page;
 mod lost_particles;
 mod measures;
 mod meshes_told;

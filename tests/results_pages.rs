@@ -16,17 +16,134 @@ fn the_report_is_one_page_that_loads_nothing() {
     case.title = "Heat & <spheres>".into();
     fake::run(&case, &out, 0.0);
     let page = fs::read_to_string(calcine::report::write(&out).unwrap()).unwrap();
-    for outside in ["http:", "https:", "src=", "href=", "@import", "<script"] {
+    for outside in ["http:", "https:", "src=", "@import", "<link"] {
         assert!(!page.contains(outside), "the page contains `{outside}`");
     }
+    for link in page.split("href=\"").skip(1) {
+        let file = link.split('"').next().unwrap();
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    well_formed(&page);
     assert!(page.contains("Heat &amp; &lt;spheres&gt;"));
     // Five views of two columns of twelve cells and ten particles each.
     assert_eq!(page.matches("<polygon").count(), 5 * 24);
     assert_eq!(page.matches("class=\"sphere\"").count(), 5 * 10);
     // The curves: ten particles, three quantities, two residuals, two iterations, two errors of steps; four fields of the
     // gas and two of the particles along the probe at five times.
-    assert_eq!(page.matches("class=\"curve\"").count(), 19 + 6 * 5);
+    let curves = |text: &str| text.matches("class=\"curve\"").count();
+    let (before, rest) = page.split_once("<h2>Profiles</h2>").unwrap();
+    let (profiles, after) = rest.split_once("<h2>Ledger</h2>").unwrap();
+    assert_eq!(curves(before) + curves(after), 19 + 6 * 5);
+    // Profiles at three times; the histogram of temperatures at two.
+    assert!(
+        profiles.contains("Gas: temperature in K")
+            && profiles.contains("Particles: temperature in K")
+    );
+    assert_eq!(curves(profiles) % 3, 2);
+    let view = page.split("class=\"bed-view").count() - 1;
+    assert_eq!((view, page.matches("class=\"bed-data\"").count()), (1, 1));
     assert!(!page.contains("NaN"));
+}
+
+#[test]
+fn the_view_of_a_hundred_thousand_particles_fits_the_page() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    fake::run(&fake::case(), &out, 0.0);
+    for number in 0..5 {
+        let path = out.join(format!("particles/particles_{number:04}.vtp"));
+        fs::write(path, many_particles(100_000, number)).unwrap();
+    }
+    let page = fs::read_to_string(calcine::report::write(&out).unwrap()).unwrap();
+    assert!(page.len() <= 3_000_000, "{}", page.len());
+    let data = page.split("class=\"bed-data\">").nth(1).unwrap();
+    let data: serde_json::Value =
+        serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    let frames = data["frames"].as_array().unwrap();
+    assert!(!frames.is_empty());
+    assert!(frames.iter().all(|frame| frame["count"] == 100_000));
+    // The last snapshot is there, with the quantity of the pictures.
+    assert_eq!(frames.last().unwrap()["time"], "20 s");
+    let first = data["first"].as_u64().unwrap() as usize;
+    assert_eq!(data["columns"][first]["label"], "temperature in K");
+    well_formed(&page);
+}
+
+/// A snapshot of particles at pseudo-random places that warm up.
+fn many_particles(count: usize, number: u32) -> Vec<u8> {
+    let mut state = 1_u64;
+    let mut random = move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut arrays: [(&str, usize, Vec<f64>); 3] = [
+        ("points", 3, vec![]),
+        ("radius", 1, vec![]),
+        ("temperature", 1, vec![]),
+    ];
+    for _ in 0..count {
+        let centre = [
+            0.01 * random(),
+            0.01 * random(),
+            0.1 * random() + 1e-4 * f64::from(number),
+        ];
+        arrays[2]
+            .2
+            .push(300.0 + 1000.0 * centre[2] + f64::from(number));
+        arrays[0].2.extend(centre);
+        arrays[1].2.push(1e-4 * (1.0 + random()));
+    }
+    let (mut heads, mut data) = (String::new(), Vec::new());
+    for (name, components, values) in &arrays {
+        heads += &format!(
+            "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{}\"/>",
+            data.len()
+        );
+        data.extend((8 * values.len() as u64).to_le_bytes());
+        data.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    }
+    let mut file = format!(
+        "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt64\"><PolyData><Piece NumberOfPoints=\"{count}\">\
+         <PointData>{heads}</PointData></Piece></PolyData><AppendedData encoding=\"raw\">_"
+    )
+    .into_bytes();
+    file.extend(data);
+    file.extend(b"</AppendedData></VTKFile>");
+    file
+}
+
+/// Checks that each element of a page ends where it should; what has no end in HTML is let be.
+fn well_formed(page: &str) {
+    const EMPTY: [&str; 5] = ["meta", "input", "br", "img", "link"];
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = page;
+    while let Some(start) = rest.find('<') {
+        rest = &rest[start + 1..];
+        if rest.starts_with('!') {
+            continue;
+        }
+        let end = rest.find('>').expect("a tag ends");
+        let tag = &rest[..end];
+        rest = &rest[end + 1..];
+        let name = tag
+            .trim_start_matches('/')
+            .split([' ', '/', '\n'])
+            .next()
+            .unwrap();
+        match tag {
+            _ if tag.starts_with('/') => assert_eq!(open.pop(), Some(name)),
+            _ if tag.ends_with('/') || EMPTY.contains(&name) => {}
+            _ => {
+                open.push(name);
+                if ["script", "style"].contains(&name) {
+                    rest = &rest[rest.find(&format!("</{name}")).expect("its text ends")..];
+                }
+            }
+        }
+    }
+    assert_eq!(open, [""; 0]);
 }
 
 #[test]

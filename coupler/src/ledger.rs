@@ -2,6 +2,8 @@
 
 use calcine_physics::Vec3;
 
+use crate::flows::WindowFlows;
+
 /// Name of the line that is no error: see [`Ledger::storage_clock`].
 pub const STORAGE_CLOCK: &str = "storage_clock";
 
@@ -130,6 +132,8 @@ pub struct Ledger {
     pub lost: CarriedInventory,
     /// Mass of each element of a gas mixture in kg, by its symbol.
     pub elements: Vec<(String, BalanceLine)>,
+    /// What passed in the last window; nothing before the first of a process.
+    pub flows: WindowFlows,
 }
 
 impl Ledger {

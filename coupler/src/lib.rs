@@ -15,6 +15,7 @@ pub mod extreme;
 pub mod feeds;
 pub mod findings;
 pub mod finite;
+pub mod flows;
 pub mod gas_chemistry;
 pub mod gas_columns;
 pub mod gas_wall;

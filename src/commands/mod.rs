@@ -28,6 +28,7 @@ mod sweep_axes;
 mod sweep_table;
 mod tune;
 mod tuning_line;
+mod watch;
 
 use std::os::unix::process::CommandExt;
 use std::process::{self, ExitCode};
@@ -61,6 +62,7 @@ enum Command {
     Tune(tune::Arguments),
     Conform(conform::Arguments),
     Report(report::Arguments),
+    Watch(watch::Arguments),
     Prepare(prepare::Arguments),
     New(new::Arguments),
     Schema(schema::Arguments),
@@ -87,6 +89,7 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Command::Tune(arguments) => tune::run(arguments),
         Command::Conform(arguments) => conform::run(arguments),
         Command::Report(arguments) => kinds::report(arguments),
+        Command::Watch(arguments) => watch::run(arguments, kinds::page),
         Command::Prepare(arguments) => prepare::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),

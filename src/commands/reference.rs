@@ -19,9 +19,9 @@ const EXIT_CODES: &str = "
 
 | code | meaning |
 |---|---|
-| 0 | success |
+| 0 | success; `calcine watch` ended by Ctrl-C |
 | 1 | any failure without a code of its own |
-| 2 | the case or the command line is wrong |
+| 2 | the case or the command line is wrong, or a folder holds no run |
 | 3 | a solver diverged, the inside of a particle could not be integrated, or a law has no value for the state that it got |
 | 4 | a solver died, was silent, or could not be started |
 | 5 | a quantity lies outside its band, or a solver breaks a law of `calcine conform` |

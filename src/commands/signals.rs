@@ -19,16 +19,7 @@ impl SignalThread {
         interrupts: &Interrupts,
         stop_after: Option<Duration>,
     ) -> Result<Self, Failure> {
-        let mut caught = vec![SIGINT, SIGTERM];
-        if !is_ignored(SIGHUP) {
-            caught.push(SIGHUP);
-        }
-        let mut signals = Signals::new(caught).map_err(|cause| {
-            Failure::new(
-                exit::OTHER,
-                format_args!("signals cannot be caught: {cause}"),
-            )
-        })?;
+        let EndSignals(mut signals) = EndSignals::catch()?;
         let handle = signals.handle();
         let on_signal = interrupts.clone();
         std::thread::spawn(move || {
@@ -49,6 +40,31 @@ impl SignalThread {
             });
         }
         Ok(Self(handle))
+    }
+}
+
+/// Ctrl-C, SIGTERM and SIGHUP, where it is not ignored.
+pub(super) struct EndSignals(Signals);
+
+impl EndSignals {
+    /// Catches them from here on.
+    pub(super) fn catch() -> Result<Self, Failure> {
+        let mut caught = vec![SIGINT, SIGTERM];
+        if !is_ignored(SIGHUP) {
+            caught.push(SIGHUP);
+        }
+        let signals = Signals::new(caught).map_err(|cause| {
+            Failure::new(
+                exit::OTHER,
+                format_args!("signals cannot be caught: {cause}"),
+            )
+        })?;
+        Ok(Self(signals))
+    }
+
+    /// Returns with the first of them.
+    pub(super) fn wait(mut self) {
+        let _ = self.0.forever().next();
     }
 }
 

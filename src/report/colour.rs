@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use super::number::figure;
 
 /// Stops of the scale, evenly spaced, as red, green, blue; lightness rises all the way.
-const STOPS: [[f64; 3]; 6] = [
-    [28.0, 30.0, 92.0],
-    [84.0, 39.0, 143.0],
-    [163.0, 52.0, 130.0],
-    [224.0, 92.0, 84.0],
-    [247.0, 155.0, 60.0],
-    [252.0, 230.0, 140.0],
+pub(crate) const STOPS: [[u8; 3]; 6] = [
+    [28, 30, 92],
+    [84, 39, 143],
+    [163, 52, 130],
+    [224, 92, 84],
+    [247, 155, 60],
+    [252, 230, 140],
 ];
 
 /// The colour of a share between 0 (cold) and 1 (hot), as `#rrggbb`.
@@ -20,7 +20,8 @@ pub(crate) fn scale(share: f64) -> String {
     let lower = (place.floor() as usize).min(STOPS.len() - 2);
     let part = place - lower as f64;
     let mut text = String::from("#");
-    for (low, high) in STOPS[lower].iter().zip(&STOPS[lower + 1]) {
+    for (&low, &high) in STOPS[lower].iter().zip(&STOPS[lower + 1]) {
+        let (low, high) = (f64::from(low), f64::from(high));
         let value = (low + part * (high - low)).round() as u8;
         // Writing to a String cannot fail.
         let _ = write!(text, "{value:02x}");
@@ -52,6 +53,14 @@ impl Range {
                 (low.min(value), high.max(value))
             });
         (low <= high).then_some(Self { low, high })
+    }
+
+    /// The range of both.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
     }
 
     /// The colour of a value.
@@ -98,7 +107,7 @@ impl Range {
         let _ = write!(
             svg,
             "<text class=\"label\" x=\"{x}\" y=\"{}\">{label}</text></g>",
-            y - 10.0
+            y - 16.0
         );
         svg
     }

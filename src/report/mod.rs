@@ -1,16 +1,22 @@
 //! The report of a run: one self-contained HTML page made from a result directory.
 
+mod bed_columns;
+mod cells;
 pub(crate) mod colour;
-mod film;
+mod flows;
+pub(crate) mod links;
 pub(crate) mod number;
 pub(crate) mod overview;
 pub(crate) mod page;
 mod picture;
 pub(crate) mod plot;
 mod probes;
+mod profiles;
 mod section;
+mod shade;
 mod swept_axis;
 mod ticks;
+mod view;
 mod voids;
 mod warnings;
 
@@ -21,18 +27,31 @@ use calcine_coupler::ledger::{DRAG_CARRY, PRESCRIBED_HEAT, STORAGE_CLOCK};
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
 use self::plot::{Curve, ExpectedBand, Plot, Stroke, TIME};
+use self::view::View;
 use crate::results::read::Series;
 use crate::results::summary::{QuantityResult, SolverSummary};
-use crate::results::{CASE, ResultsError, Summary, files};
+use crate::results::{CASE, ResultsError, Summary, Verdict, files};
 
 /// Name of the page in a result directory.
 pub use crate::results::files::REPORT;
 /// Up to so many particles are named in the legend of their plot.
 const NAMED_PARTICLES: usize = 20;
 
+/// Bytes of a page at most, as far as its view of the bed can see to that.
+const PAGE: usize = 3_000_000;
+/// Stands for the view until it is known how much room there is for it.
+const VIEW_PLACE: &str = "<!--view-->";
+
 /// Writes `report.html` into a result directory, from the files that are in it.
 pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
-    let summary = Summary::read(directory)?;
+    let path = directory.join(REPORT);
+    files::replace(&path, page(directory)?.as_bytes())?;
+    Ok(path)
+}
+
+/// The page of a result directory, from the files that are in it.
+pub(crate) fn page(directory: &Path) -> Result<String, ResultsError> {
+    let summary = Summary::now(directory)?;
     let series = Series::read(directory)?;
     let case = files::read(&directory.join(CASE))?;
     let kicker = format!(
@@ -53,23 +72,39 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
         let text = "Particles that feeds brought, that outlets took, and what was left of those that reactions used up.";
         page.section("Particles that came and went", text, &came_and_went);
     }
+    let view = View::read(directory)?;
+    let picture = picture::render(directory, |shade| view.as_ref()?.range(shade))?;
     page.section(
         "Bed and gas",
         "A cut through the middle, seen from the side: gas cells and particles in one colour scale, that of \
          particles' speeds where all have one temperature.",
-        &picture::render(directory)?,
+        &picture.html,
     );
-    let film = film::render(directory)?;
-    if !film.is_empty() {
-        let text = "The same cut, snapshot by snapshot.";
-        page.section("The bed in motion", text, &film);
+    let view = view.zip(picture.shade);
+    if view.is_some() {
+        let text = "All particles, snapshot by snapshot, and walls as they are at the start, in the colours of the picture above.";
+        page.section("The bed in three dimensions", text, VIEW_PLACE);
+        page.adds(view::STYLE, view::SCRIPT);
     }
+    let text = "What came in and went out, as the ledger counts it.";
+    page.section("Heat and mass in and out", text, &flows::render(&summary));
     page.section("Over time", "", &plots(&summary, &series));
     let sampled = probes::render(directory)?;
     if !sampled.is_empty() {
         let text = "Fields at the points of the case's probes, snapshot by snapshot.";
         page.section("Probes", text, &sampled);
     }
+    let distributions = profiles::render(directory)?;
+    page.section(
+        "Profiles",
+        "Means over layers across the longest side: of the gas by volume, of the particles by number.",
+        &distributions.profiles,
+    );
+    page.section(
+        "Histograms",
+        "Of the number of particles, at the first snapshot and at the last.",
+        &distributions.histograms,
+    );
     let profiles = voids::render(directory)?;
     if !profiles.is_empty() {
         let text = "Share of the cross-section, and in a cylinder of the surface of each distance from its wall, \
@@ -92,6 +127,8 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
         &residuals(&series),
     );
     page.section("What was run", "", &provenance(&summary));
+    let text = "They open where they lie beside this page.";
+    page.section("Files", text, &links::render(directory));
     let text = format!(
         "<details><summary>The case as it was run</summary><pre>{}</pre></details>",
         escape(&case)
@@ -101,9 +138,15 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
         "Calcine {} · all times are process (real) time unless said otherwise",
         summary.calcine
     );
-    let path = directory.join(REPORT);
-    files::replace(&path, page.finish(&footer).as_bytes())?;
-    Ok(path)
+    let text = page.finish(&footer);
+    Ok(match view {
+        Some((view, shade)) => {
+            let room = PAGE.saturating_sub(text.len());
+            let html = view.render(shade, picture.range, room);
+            text.replacen(VIEW_PLACE, &html, 1)
+        }
+        None => text,
+    })
 }
 
 fn headline(summary: &Summary) -> String {
@@ -138,10 +181,14 @@ fn headline(summary: &Summary) -> String {
         (
             "wall time",
             span(wall),
-            format!(
-                "{} s of process time a second",
-                figure(summary.process_time_s / wall, 3)
-            ),
+            match summary.verdict {
+                // That of the last checkpoint, unlike the process time.
+                Verdict::Running => "at the last checkpoint".into(),
+                _ => format!(
+                    "{} s of process time a second",
+                    figure(summary.process_time_s / wall, 3)
+                ),
+            },
         ),
         (
             "energy closes to",

@@ -27,6 +27,18 @@ pub(crate) fn with_unit(value: f64, digits: usize, unit: &str) -> String {
     }
 }
 
+/// Label of an axis: a name and its unit, as people write them.
+pub(crate) fn axis_label(name: &str, unit: &str) -> String {
+    let name = name.replace('_', " ");
+    match unit {
+        "" | "1" => name,
+        unit => {
+            let unit = unit.replace("^2", "²").replace("^3", "³");
+            format!("{name} in {unit}")
+        }
+    }
+}
+
 /// A time span in the unit that suits it.
 pub(crate) fn span(seconds: f64) -> String {
     match seconds {

@@ -8,6 +8,9 @@ const STYLE: &str = include_str!("style.css");
 /// Rows of a table as blocks.
 const STACKED: &str = include_str!("stacked.css");
 
+/// Width in px below which rows of every table with three columns and more are blocks.
+const NARROW: usize = 700;
+
 /// Text made safe for HTML and SVG.
 pub(crate) fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
@@ -27,6 +30,8 @@ pub(crate) fn escape(text: &str) -> String {
 pub(crate) struct Page {
     body: String,
     title: String,
+    styles: String,
+    scripts: String,
 }
 
 impl Page {
@@ -40,6 +45,8 @@ impl Page {
         Self {
             body,
             title: title.into(),
+            styles: STYLE.into(),
+            scripts: String::new(),
         }
     }
 
@@ -61,16 +68,25 @@ impl Page {
         self.body.push_str(content);
     }
 
+    /// Styles and a script of what the page holds.
+    pub fn adds(&mut self, styles: &str, script: &str) {
+        self.styles.push_str(styles);
+        // Writing to a String cannot fail.
+        let _ = write!(self.scripts, "<script>{script}</script>");
+    }
+
     /// The whole page.
     pub fn finish(self, footer: &str) -> String {
         format!(
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
              <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
-             <title>{}</title><style>{STYLE}</style></head><body><main>{}\
-             <footer>{}</footer></main></body></html>\n",
+             <title>{}</title><style>{}@media(max-width:{NARROW}px){{{STACKED}}}</style></head><body><main>{}\
+             <footer>{}</footer></main>{}</body></html>\n",
             escape(&self.title),
+            self.styles,
             self.body,
-            escape(footer)
+            escape(footer),
+            self.scripts
         )
     }
 }
@@ -104,9 +120,16 @@ pub(crate) fn tiles(entries: &[(&str, String, String)]) -> String {
 }
 
 /// A table; columns whose heading begins with `#` hold figures and are set to the right. Cells are
-/// HTML.
+/// HTML. On narrow screens each row of three columns and more is a block with a line for each cell.
 pub(crate) fn table(head: &[&str], rows: &[Vec<String>]) -> String {
-    labelled_table(head, rows, false)
+    match head.len() {
+        _ if rows.is_empty() => String::new(),
+        0..=2 => labelled_table(head, rows, false),
+        _ => format!(
+            "<div class=\"stack\">{}</div>",
+            labelled_table(head, rows, true)
+        ),
+    }
 }
 
 /// Width of a column of a table that is not stacked, about, in px.

@@ -4,17 +4,31 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::colour::Range;
-use super::film::Shade;
 use super::number::span;
 use super::section::{self, Circle, Polygon, Spot};
+use super::shade::Shade;
 use crate::results::ResultsError;
 use crate::results::read::{self, Arrays};
 
 const HEIGHT: f64 = 460.0;
 const WIDEST: f64 = 1050.0;
-const BAR: f64 = 110.0;
+const BAR: f64 = 128.0;
 /// Room above for the label of the colour bar.
-const TOP: f64 = 26.0;
+const TOP: f64 = 36.0;
+
+/// Polygons and circles of all views together at most, where two views have not more.
+const SHAPES: usize = 8000;
+
+/// The picture, and the colours that it shares with what else shows the bed.
+#[derive(Default)]
+pub(super) struct BedPicture {
+    /// As HTML; empty where there are no snapshots.
+    pub html: String,
+    /// What colours it.
+    pub shade: Option<Shade>,
+    /// Ends of the scale.
+    pub range: Option<Range>,
+}
 
 /// One snapshot, cut.
 struct View {
@@ -25,37 +39,56 @@ struct View {
     circles: Vec<Circle>,
 }
 
-/// Side views at the start, the end and times between; empty where there are no snapshots.
-pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
+/// Side views at the start, the end and times between; `wider` gives what else the scale has to span.
+pub(super) fn render(
+    directory: &Path,
+    wider: impl Fn(Shade) -> Option<Range>,
+) -> Result<BedPicture, ResultsError> {
     let gas = read::collection(directory, "gas.pvd")?;
     let particles = read::collection(directory, "particles.pvd")?;
     let count = gas.len().min(particles.len());
     let Some((_, first)) = gas.first() else {
-        return Ok(String::new());
+        return Ok(BedPicture::default());
     };
     let outline = read::arrays(first)?;
     let plane = section::plane(&outline);
     let Some((low, high)) = extent(&section::polygons(&outline, plane)) else {
-        return Ok(String::new());
+        return Ok(BedPicture::default());
+    };
+    let view = |number: usize| {
+        let (time, gas_file) = &gas[number];
+        let gas = read::arrays(gas_file)?;
+        let bed = read::arrays(&particles[number].1)?;
+        Ok(View {
+            time: *time,
+            polygons: section::polygons(&gas, plane),
+            circles: section::circles(&bed, plane),
+            gas,
+            particles: bed,
+        })
+    };
+    let Some(last) = count.checked_sub(1).map(view).transpose()? else {
+        return Ok(BedPicture::default());
     };
     let aspect = (high[0] - low[0]) / (high[1] - low[1]);
-    let shown = frames(aspect).min(count);
-    let views = (0..shown)
-        .map(|frame| {
-            let number = frame * (count - 1) / (shown - 1).max(1);
-            let (time, gas_file) = &gas[number];
-            let gas = read::arrays(gas_file)?;
-            let bed = read::arrays(&particles[number].1)?;
-            Ok(View {
-                time: *time,
-                polygons: section::polygons(&gas, plane),
-                circles: section::circles(&bed, plane),
-                gas,
-                particles: bed,
-            })
-        })
+    let room = SHAPES / (last.polygons.len() + last.circles.len()).max(1);
+    let shown = frames(aspect).min(room.max(2)).min(count);
+    let mut views = (0..shown - 1)
+        .map(|frame| view(frame * (count - 1) / (shown - 1)))
         .collect::<Result<Vec<_>, ResultsError>>()?;
-    Ok(draw(&views, low, high))
+    views.push(last);
+    let shade = Shade::of(views.iter().map(|view| (&view.gas, &view.particles)));
+    let values = views.iter().flat_map(|view| {
+        let gas = shade.gas(&view.gas).iter().copied();
+        gas.chain(shade.particles(&view.particles))
+    });
+    let both = |range: Range| wider(shade).map_or(range, |other| range.with(other));
+    let range = Range::of(values).map(both);
+    Ok(BedPicture {
+        html: draw(&views, low, high, shade, range),
+        shade: Some(shade),
+        range,
+    })
 }
 
 /// How many views fit side by side: narrow columns leave room for six.
@@ -75,20 +108,14 @@ fn extent(polygons: &[Polygon]) -> Option<(Spot, Spot)> {
     Some(([x.low, z.low], [x.high, z.high]))
 }
 
-fn draw(views: &[View], low: Spot, high: Spot) -> String {
-    let shade = Shade::of(views.iter().map(|view| (&view.gas, &view.particles)));
-    let values = views.iter().flat_map(|view| {
-        let gas = shade.gas(&view.gas).iter().copied();
-        gas.chain(shade.particles(&view.particles))
-    });
-    let range = Range::of(values);
+fn draw(views: &[View], low: Spot, high: Spot, shade: Shade, range: Option<Range>) -> String {
     let (wide, tall) = (high[0] - low[0], high[1] - low[1]);
     let gap = 34.0;
     let room = (WIDEST - BAR) / views.len() as f64 - gap;
     let scale = (HEIGHT / tall).min(room / wide);
     let (wide, tall) = (wide * scale, tall * scale);
     let column = wide.max(64.0) + gap;
-    let (width, height) = (column * views.len() as f64 + BAR, tall + 60.0);
+    let (width, height) = (column * views.len() as f64 + BAR, tall + 72.0);
     let mut svg = format!(
         "<figure class=\"picture\"><svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          role=\"img\" aria-label=\"Side views of bed and gas\">"
@@ -133,7 +160,7 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
             "<rect class=\"hull\" x=\"{left:.1}\" y=\"{TOP}\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>\
              <text class=\"label\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             left + wide / 2.0,
-            tall + TOP + 22.0,
+            tall + TOP + 24.0,
             span(view.time)
         );
     }

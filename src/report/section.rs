@@ -82,17 +82,14 @@ pub(super) fn polygons(gas: &Arrays, plane: f64) -> Vec<Polygon> {
 
 /// The particles that the plane cuts; one that stands for several as a sphere of their volume, weight^(1/3) times as wide.
 pub(super) fn circles(particles: &Arrays, plane: f64) -> Vec<Circle> {
-    let list = |name: &str| particles.get(name).map_or(&[][..], |array| &array.values);
-    let centres = list("points").chunks_exact(3);
-    let wide = |particle: usize, radius: f64| match list("weight").get(particle) {
-        Some(&weight) if weight != 1.0 => radius * weight.cbrt(),
-        _ => radius,
-    };
-    centres
-        .zip(list("radius"))
+    let points = particles
+        .get("points")
+        .map_or(&[][..], |array| &array.values);
+    points
+        .chunks_exact(3)
+        .zip(radii(particles))
         .enumerate()
-        .filter_map(|(particle, (centre, &radius))| {
-            let radius = wide(particle, radius);
+        .filter_map(|(particle, (centre, radius))| {
             let squared = radius * radius - (centre[1] - plane).powi(2);
             (squared > 0.0).then(|| Circle {
                 particle,
@@ -101,6 +98,16 @@ pub(super) fn circles(particles: &Arrays, plane: f64) -> Vec<Circle> {
             })
         })
         .collect()
+}
+
+/// Radii of particles in m; of one that stands for several that of a sphere of their volume.
+pub(super) fn radii(particles: &Arrays) -> Vec<f64> {
+    let list = |name: &str| particles.get(name).map_or(&[][..], |array| &array.values);
+    let wide = |(particle, &radius): (usize, &f64)| match list("weight").get(particle) {
+        Some(&weight) if weight != 1.0 => radius * weight.cbrt(),
+        _ => radius,
+    };
+    list("radius").iter().enumerate().map(wide).collect()
 }
 
 /// What the circles of a picture are, under it, where a particle stands for several; else nothing.

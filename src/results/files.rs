@@ -31,9 +31,9 @@ pub const CASE: &str = "case.toml";
 pub(super) const DRAFT: &str = "results.h5.new";
 
 /// Collection of the snapshots of the gas.
-pub(super) const GAS: &str = "gas.pvd";
+pub(crate) const GAS: &str = "gas.pvd";
 /// Collection of the snapshots of the particles.
-pub(super) const PARTICLES: &str = "particles.pvd";
+pub(crate) const PARTICLES: &str = "particles.pvd";
 /// Folders of the snapshots of the gas, of the particles and of the probes.
 pub(super) const SNAPSHOTS: [&str; 3] = ["gas", "particles", "probes"];
 

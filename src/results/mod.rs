@@ -8,6 +8,7 @@
 mod difference;
 mod error;
 pub(crate) mod files;
+pub mod flows;
 // Only HDF5 holds descriptions.
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 pub mod inertial_number;
@@ -40,7 +41,7 @@ pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo, unoccupied};
 pub use resume::{as_finished, clear_start, may_start_again};
-pub use summary::{Summary, Verdict, kind};
+pub use summary::{Summary, Verdict, kind, must_hold_run};
 
 /// Refuses probes outside a mesh, and quantities of patches that it lacks.
 pub fn fits(case: &Case, mesh: &Mesh) -> Result<(), ResultsError> {

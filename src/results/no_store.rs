@@ -1,5 +1,6 @@
 //! In place of `results.h5` where Calcine is built without HDF5: nothing is written.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use calcine_coupler::mesh::Mesh;
@@ -65,4 +66,9 @@ impl Store {
     pub fn flush(&self) -> Result<(), ResultsError> {
         Ok(())
     }
+}
+
+/// None are known.
+pub(super) fn units(_path: &Path) -> [BTreeMap<String, String>; 2] {
+    Default::default()
 }

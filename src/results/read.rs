@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{ResultsError, SERIES, files, sheet};
+use super::{ResultsError, SERIES, STORE, files, sheet, store};
 use crate::vtk_xml;
 
 /// The time series of a run.
@@ -86,6 +86,11 @@ pub fn collection(directory: &Path, name: &str) -> Result<Vec<(f64, PathBuf)>, R
     Ok(entries
         .map(|(time, file)| (time, directory.join(file)))
         .collect())
+}
+
+/// Units of the fields of the gas and of the particles in snapshots by their names; empty where the results do not tell.
+pub fn units(directory: &Path) -> [BTreeMap<String, String>; 2] {
+    store::units(&directory.join(STORE))
 }
 
 /// Reads the arrays of a `.vtu` or `.vtp` file that the recorder wrote.

@@ -301,6 +301,12 @@ impl Recorder {
     fn count(&mut self, moment: &CommittedState<'_>) {
         self.smoothed(moment);
         let time = moment.clocks.process.seconds();
+        let span = moment
+            .window
+            .map_or(0.0, |window| window.span.process.seconds());
+        let species = self.case.gas.properties.species();
+        let flows = &mut self.counters.flows;
+        flows.add(&moment.ledger.flows, species, span);
         for first in warnings::add(&mut self.counters.warnings, moment.findings, time) {
             tracing::warn!("{first}; counted in {SUMMARY}, not told of again");
         }
@@ -522,6 +528,7 @@ impl Recorder {
             particles: moment.particles.len(),
             cells: moment.mesh.cells(),
             passed: PassedParticles::of(moment.ledger),
+            flows: self.counters.flows.clone(),
             ledger: LedgerSummary {
                 lines: moment
                     .ledger

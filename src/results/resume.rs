@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::files::{DRAFT, gas_file, particle_file, probe_file};
+use super::flows::FlowSummary;
 use super::inertial_number::InertialNumberStatistics;
 use super::marked::FileMark;
 use super::moment::SnapshotMoment;
@@ -79,6 +80,9 @@ pub(super) struct Counters {
     /// Inertial number so far.
     #[serde(default)]
     pub pace: InertialNumberStatistics,
+    /// What passed so far.
+    #[serde(default)]
+    pub flows: FlowSummary,
     /// Wall times so far.
     pub wall: WallTimes,
     /// Processor times so far.

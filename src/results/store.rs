@@ -2,6 +2,7 @@
 //!
 //! Arrays are shuffled and deflated at level 1, which every HDF5 reader knows.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::interior::ColumnValues;
@@ -233,6 +234,22 @@ fn unlocked() -> FileBuilder {
         access.chunk_cache(slots, bytes, 1.0)
     });
     builder
+}
+
+/// Units of the fields of the gas and of the particles by their names, as the first snapshot states them; a file that a run
+/// is writing may tell none.
+pub(super) fn units(path: &Path) -> [BTreeMap<String, String>; 2] {
+    let read = |part: &str| -> hdf5::Result<BTreeMap<String, String>> {
+        let file = unlocked().open(path)?;
+        let group = file.group(&format!("snapshots/0000/{part}"))?;
+        let unit = |name: String| {
+            let unit = group.dataset(&name)?.attr("unit")?;
+            let text = unit.read_scalar::<VarLenUnicode>()?;
+            Ok((name, text.to_string()))
+        };
+        group.member_names()?.into_iter().map(unit).collect()
+    };
+    ["gas", "particles"].map(|part| read(part).unwrap_or_default())
 }
 
 fn failure(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> ResultsError {

@@ -7,10 +7,11 @@ use calcine_coupler::ledger::{CarriedInventory, Ledger};
 use serde::{Deserialize, Serialize};
 
 use super::files::{self, COMPARISON, number};
+use super::flows::FlowSummary;
 use super::inertial_number::InertialNumberStatistics;
 use super::steps::StepSummary;
 use super::warnings::Warnings;
-use super::{ResultsError, SUMMARY};
+use super::{ResultsError, STATUS, SUMMARY};
 use crate::case::units::{short, shown};
 
 /// How a quantity, or the run, stands against what the case expects.
@@ -89,6 +90,9 @@ pub struct Summary {
     /// Particles that came and went.
     #[serde(default)]
     pub passed: PassedParticles,
+    /// What passed into and out of gas and particles.
+    #[serde(default)]
+    pub flows: FlowSummary,
     /// The ledger.
     pub ledger: LedgerSummary,
     /// Wall times by stage in s, over all processes of the run.
@@ -409,24 +413,45 @@ pub fn kind(directory: &Path) -> String {
     summary["kind"].as_str().unwrap_or("bed").to_owned()
 }
 
+/// Refuses a folder that holds no run.
+pub fn must_hold_run(directory: &Path) -> Result<(), ResultsError> {
+    if directory.join(SUMMARY).exists() {
+        return Ok(());
+    }
+    Err(ResultsError::NoResults {
+        path: directory.to_owned(),
+        fact: match directory {
+            one if !one.is_dir() => "there is no such folder",
+            one if one.join(COMPARISON).exists() => {
+                "it is that of a comparison, whose page is compare.html; its runs are in the folders below it"
+            }
+            _ => "it holds no summary.json",
+        },
+    })
+}
+
 impl Summary {
     /// Reads the summary of a result directory.
     pub fn read(directory: &Path) -> Result<Self, ResultsError> {
+        must_hold_run(directory)?;
         let path = directory.join(SUMMARY);
-        if !path.exists() {
-            return Err(ResultsError::NoResults {
-                path: directory.to_owned(),
-                fact: match directory {
-                    one if !one.is_dir() => "there is no such folder",
-                    one if one.join(COMPARISON).exists() => {
-                        "it is that of a comparison, whose page is compare.html; its runs are in the folders below it"
-                    }
-                    _ => "it holds no summary.json",
-                },
-            });
-        }
         serde_json::from_str(&files::read(&path)?)
             .map_err(|error| ResultsError::content(&path, error.to_string()))
+    }
+
+    /// The same, with the times and windows that a run in progress has come to since it wrote it.
+    pub fn now(directory: &Path) -> Result<Self, ResultsError> {
+        let mut summary = Self::read(directory)?;
+        if summary.verdict == Verdict::Running {
+            // A status that is not there yet, or is no longer, says nothing new.
+            let text = std::fs::read_to_string(directory.join(STATUS)).unwrap_or_default();
+            let status: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+            let time = |name: &str, before: f64| status[name].as_f64().unwrap_or(before);
+            summary.process_time_s = time("process_time_s", summary.process_time_s);
+            summary.motion_time_s = time("motion_time_s", summary.motion_time_s);
+            summary.windows = status["windows"].as_u64().unwrap_or(summary.windows);
+        }
+        Ok(summary)
     }
 
     /// Replaces the summary of a result directory.

@@ -8,8 +8,9 @@ use calcine_physics::thermo::Element;
 use super::exchange::ExchangeStage;
 use super::particles::MotionStage;
 use crate::bodies::BodyBalance;
-use crate::ledger::Ledger;
-use crate::part::{CellReceived, ParticleFields};
+use crate::flows::{TwoWayFlow, WindowFlows};
+use crate::ledger::{Ledger, PRESCRIBED_HEAT};
+use crate::part::{Balance, CellReceived, ParticleFields};
 use crate::time::{GasStorage, Window};
 
 /// What a window comes to.
@@ -40,6 +41,23 @@ impl WindowBalances<'_> {
         ledger
             .mass
             .book(scale * gas.open(), scale * gas.magnitude());
+        ledger.flows = WindowFlows {
+            mass: vec![
+                ("boundary", through_boundary(gas, scale)),
+                ("reservoir", TwoWayFlow::of_net(scale * gas.reservoir)),
+                ("sources", TwoWayFlow::of_net(scale * gas.source)),
+                ("particles", TwoWayFlow::of_net(scale * gas.exchange)),
+                ("storage", TwoWayFlow::of_net(-scale * gas.stored)),
+            ],
+            energy: Vec::new(),
+            species: self
+                .exchange
+                .received
+                .species
+                .iter()
+                .map(|balance| through_boundary(balance, scale))
+                .collect(),
+        };
         self.book_elements(ledger, scale);
         self.book_energy(ledger, scale, process);
         self.book_momentum(ledger, window.span.motion.seconds());
@@ -96,6 +114,11 @@ impl WindowBalances<'_> {
             (!body).then_some(*heat)
         };
         let walls = || reservoirs.iter().enumerate().filter_map(outside);
+        let way = TwoWayFlow::of_net;
+        let through_walls = TwoWayFlow::of_flows(
+            walls().sum::<f64>() * process,
+            walls().map(f64::abs).sum::<f64>() * process,
+        );
         let [walls, walls_magnitude] = [walls().sum::<f64>(), walls().map(f64::abs).sum()];
         let [walls, walls_magnitude] = [walls, walls_magnitude].map(|watt| watt * process);
         let bodies = self.bodies;
@@ -130,6 +153,17 @@ impl WindowBalances<'_> {
                 - self.supplied.sum,
             magnitude,
         );
+        ledger.flows.energy = vec![
+            ("boundary", through_boundary(gas, scale)),
+            ("reservoir", way(scale * gas.reservoir)),
+            ("sources", way(scale * gas.source)),
+            ("walls", through_walls),
+            (PRESCRIBED_HEAT, way(self.supplied.sum)),
+            ("radiated", way(bodies.radiated)),
+            ("particles", way(-(changes.sum + scale * formed))),
+            ("gas_storage", way(-scale * gas.stored)),
+            ("body_storage", way(-bodies.stored)),
+        ];
         if let Some(line) = &mut ledger.prescribed_heat {
             line.book(self.supplied.sum, magnitude);
         }
@@ -175,6 +209,11 @@ impl WindowBalances<'_> {
             ledger.storage_clock.book(*clock, magnitude);
         }
     }
+}
+
+/// What passed the boundary of the gas.
+fn through_boundary(balance: &Balance, scale: f64) -> TwoWayFlow {
+    TwoWayFlow::of_flows(scale * balance.boundary, scale * balance.boundary_magnitude)
 }
 
 /// Enthalpy of formation in J of the gas that the particles gave.
