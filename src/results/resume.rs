@@ -13,6 +13,7 @@ use super::files::{DRAFT, gas_file, particle_file, probe_file};
 use super::inertial_number::InertialNumberStatistics;
 use super::marked::FileMark;
 use super::moment::SnapshotMoment;
+use super::passages::OutflowTrail;
 use super::quantities::Captured;
 use super::read::{Series, collection};
 use super::steps::StepSummary;
@@ -79,6 +80,9 @@ pub(super) struct Counters {
     /// Inertial number so far.
     #[serde(default)]
     pub pace: InertialNumberStatistics,
+    /// What left through outlets before.
+    #[serde(default)]
+    pub outflow: OutflowTrail,
     /// Wall times so far.
     pub wall: WallTimes,
     /// Processor times so far.
@@ -292,7 +296,7 @@ pub fn clear_start(results: &Path) -> Result<(), ResultsError> {
 }
 
 /// Removes a file where there is one.
-fn remove(path: &Path) -> Result<(), ResultsError> {
+pub(super) fn remove(path: &Path) -> Result<(), ResultsError> {
     match fs::remove_file(path) {
         Err(cause) if cause.kind() != ErrorKind::NotFound => {
             Err(ResultsError::file("remove", path)(cause))
