@@ -135,15 +135,16 @@ impl ExternalGasLaunch<'_> {
         if self.setup.turbulence.is_in_bed() {
             catalogue = catalogue.with_bed_eddies();
         }
+        let mut optional = Catalogue::patch_report(species, self.mesh.patches().len());
+        if turbulent {
+            optional.extend(Catalogue::turbulence_report());
+        }
         let terms = Terms {
             name: NAME,
             role: "gas",
             count: self.mesh.cells() as u64,
             catalogue,
-            optional: match turbulent {
-                true => Catalogue::turbulence_report(),
-                false => Vec::new(),
-            },
+            optional,
             cells: Some(Arc::clone(&self.mesh)),
         };
         let solver = self.solver.start(terms, supervisor)?;

@@ -2,12 +2,16 @@
 
 use calcine_coupler::extreme::larger;
 use calcine_coupler::gas_columns::GasColumns;
-use calcine_coupler::part::{Backflow, Balance, Bed, CellExchange, CellReceived, Convergence};
+use calcine_coupler::part::{
+    Backflow, Balance, Bed, CellExchange, CellReceived, Convergence, PatchFlow,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_wire::{ColumnSet, Link, WireError};
 
 /// Column of what comes back in through outlets.
 const BACKFLOW: &str = "backflow";
+/// Column of what passes the patches.
+const PATCH_FLOWS: &str = "patch_flows";
 /// Column of a commit's answer.
 const TURBULENCE_RESIDUAL: &str = "turbulence_residual";
 
@@ -170,6 +174,13 @@ pub fn read(ranks: GasRanks<'_>, received: &mut CellReceived) -> Result<Converge
         });
     };
     received.storage_clock = Vec3::new(x, y, z);
+    received.patches.clear();
+    if link.catalogue().has(ColumnSet::State, PATCH_FLOWS) {
+        let of_patches = link
+            .column(PATCH_FLOWS)?
+            .chunks_exact(5 + received.species.len());
+        received.patches.extend(of_patches.filter_map(patch_flow));
+    }
     let numbers = link.column("convergence")?;
     let [outer, linear, residual, volume, converged] = *numbers else {
         return Err(WireError::Order {
@@ -233,6 +244,16 @@ pub fn turbulence_residual(links: &[Link]) -> Result<Option<f64>, WireError> {
         }
     }
     Ok(worst)
+}
+
+fn patch_flow(numbers: &[f64]) -> Option<PatchFlow> {
+    let (&[heat, mass, x, y, z], species) = numbers.split_first_chunk::<5>()?;
+    Some(PatchFlow {
+        heat,
+        mass,
+        momentum: Vec3::new(x, y, z),
+        species: species.to_vec(),
+    })
 }
 
 fn balance(numbers: [f64; 7]) -> Balance {

@@ -9,6 +9,7 @@ use calcine_physics::{Vec3, sphere};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::zone::Zone;
 use crate::motion::{NewParticle, ParticleChanges};
+use crate::outflows::Outflows;
 use crate::packing::random::SplitMix64;
 use crate::packing::{PackingError, Sizes};
 use crate::part::ParticleFields;
@@ -62,6 +63,8 @@ pub struct FeedsAndOutlets {
     pub feeds: Vec<Feed>,
     /// What goes.
     pub outlets: Vec<Outlet>,
+    /// What left through the outlets so far.
+    pub outflows: Outflows,
     /// Upwards, by which "lowest" is meant.
     pub up: Vec3,
     /// Directions in which the domain repeats itself.
@@ -83,6 +86,8 @@ pub struct PopulationChange {
     pub temperature: Vec<f64>,
     /// Rows of those that go, in the order of the particles.
     pub rows: Vec<usize>,
+    /// The outlet through which each of them goes.
+    pub outlets: Vec<usize>,
 }
 
 /// A window's place in time.
@@ -112,6 +117,7 @@ impl FeedsAndOutlets {
         Self {
             due: [owed, vec![0.0; outlets.len()]],
             drawn: vec![0; feeds.len()],
+            outflows: Outflows::new(outlets.len()),
             feeds,
             outlets,
             up,
@@ -156,10 +162,10 @@ impl FeedsAndOutlets {
         self.outlets.iter().any(|outlet| outlet.rate.is_none())
     }
 
-    /// True where the straight line between two places in m meets such an outlet.
-    pub fn lets_out_between(&self, ends: [Vec3; 2]) -> bool {
-        let mut open = self.outlets.iter().filter(|outlet| outlet.rate.is_none());
-        open.any(|outlet| outlet.zone.meets(ends))
+    /// The first such outlet that the straight line between two places in m meets.
+    pub fn outlet_between(&self, ends: [Vec3; 2]) -> Option<usize> {
+        let meets = |outlet: &Outlet| outlet.rate.is_none() && outlet.zone.meets(ends);
+        self.outlets.iter().position(meets)
     }
 
     /// Decides what goes and comes before a window.
@@ -180,12 +186,13 @@ impl FeedsAndOutlets {
         particles: &ParticleFields<'_>,
         due: &mut PopulationChange,
     ) {
-        let mut gone = vec![false; particles.len()];
-        for (outlet, due) in self.outlets.iter().zip(&mut self.due[1]) {
-            let inside = |&row: &usize| !gone[row] && outlet.zone.holds(particles.position[row]);
+        let mut gone: Vec<Option<usize>> = vec![None; particles.len()];
+        for (place, (outlet, due)) in self.outlets.iter().zip(&mut self.due[1]).enumerate() {
+            let inside =
+                |&row: &usize| gone[row].is_none() && outlet.zone.holds(particles.position[row]);
             let mut rows: Vec<usize> = (0..particles.len()).filter(inside).collect();
             let Some(rate) = outlet.rate else {
-                rows.iter().for_each(|&row| gone[row] = true);
+                rows.iter().for_each(|&row| gone[row] = Some(place));
                 continue;
             };
             let height = |row: usize| particles.position[row].dot(&self.up);
@@ -201,14 +208,16 @@ impl FeedsAndOutlets {
                     break;
                 }
                 *due -= mass;
-                gone[row] = true;
+                gone[row] = Some(place);
             }
             // What was not there to be taken is not asked for later.
             if !enough {
                 *due = due.min(0.0);
             }
         }
-        due.rows = (0..particles.len()).filter(|&row| gone[row]).collect();
+        let all = gone.iter().enumerate();
+        let found = all.filter_map(|(row, outlet)| Some((row, (*outlet)?)));
+        (due.rows, due.outlets) = found.unzip();
         due.change.remove = due.rows.iter().map(|&row| particles.id[row]).collect();
     }
 

@@ -29,6 +29,7 @@ pub mod momentum_model;
 pub mod motion;
 pub mod named_columns;
 pub mod observer;
+pub mod outflows;
 pub mod packing;
 pub mod parcels;
 pub mod part;

@@ -12,7 +12,8 @@ use crate::findings::Finding;
 use crate::ledger::Ledger;
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
-use crate::part::{Bed, Convergence, GasFields, GasPhases, ParticleFields, SolverInfo};
+use crate::outflows::OutletTotals;
+use crate::part::{Bed, Convergence, GasFields, GasPhases, ParticleFields, PatchFlow, SolverInfo};
 use crate::step_error::StepError;
 use crate::time::{Clocks, Window};
 
@@ -85,6 +86,9 @@ pub struct CommittedState<'a> {
     pub models: &'a ParticleModels,
     /// What else the particles had of the gas.
     pub particle_gas: ParticleGasExchange<'a>,
+    /// What passed each patch of the gas in the window, in the order of the mesh; empty before the first window of this process, and of
+    /// a gas that does not tell.
+    pub patch_flows: &'a [PatchFlow],
     /// Bodies that store heat.
     pub bodies: &'a HeatBodies,
     /// Names of walls and surroundings that give heat to the particles.
@@ -93,6 +97,8 @@ pub struct CommittedState<'a> {
     pub reservoir_heat: &'a [f64],
     /// The ledger so far.
     pub ledger: &'a Ledger,
+    /// What left through each outlet so far.
+    pub outlets: &'a [OutletTotals],
     /// Mass in kg that feeds should have brought and that found no room.
     pub waiting: f64,
     /// The estimated error of the window's step; `None` where too few windows have passed for one.

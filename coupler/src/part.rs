@@ -213,6 +213,38 @@ impl Balance {
     }
 }
 
+/// What passes a patch of the gas: means over a window, + into the gas.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PatchFlow {
+    /// Heat in W: sensible enthalpy, zero at 298.15 K, that flows with the gas and its species, and conduction.
+    pub heat: f64,
+    /// Mass in kg/s.
+    pub mass: f64,
+    /// Momentum in N, pressure excluded: on a wall the viscous force of the wall on the gas.
+    pub momentum: Vec3,
+    /// Mass of each species in kg/s, in the order of the mixture; empty for a single gas.
+    pub species: Vec<f64>,
+}
+
+impl PatchFlow {
+    /// Multiplies all of it.
+    pub fn scale(&mut self, factor: f64) {
+        self.heat *= factor;
+        self.mass *= factor;
+        self.momentum *= factor;
+        self.species.iter_mut().for_each(|flow| *flow *= factor);
+    }
+
+    /// Adds another one.
+    pub fn add(&mut self, other: &Self) {
+        self.heat += other.heat;
+        self.mass += other.mass;
+        self.momentum += other.momentum;
+        let pairs = self.species.iter_mut().zip(&other.species);
+        pairs.for_each(|(flow, other)| *flow += other);
+    }
+}
+
 /// What the gas reports of an attempt.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellReceived {
@@ -232,6 +264,8 @@ pub struct CellReceived {
     /// What the form of the momentum equation gives the gas in N s because it stores mass over another span than
     /// momentum (docs/theory.md, TSM-8), Σ u (1 − Δt/Δτ) Δ(ε ρ V); a part of the momentum's sources.
     pub storage_clock: Vec3,
+    /// What passed each patch of the mesh, in its order; empty of a gas that does not tell.
+    pub patches: Vec<PatchFlow>,
 }
 
 /// How well the gas solved an attempt.

@@ -34,7 +34,8 @@ pub use particles::{
     FeedSpec, MotionSpec, PackingSection, PackingSpace, PlacementSpec, Population, RandomAmount,
 };
 pub use quantity::{
-    Expect, GasPlace, Measure, ParticlePlace, Probe, Quantity, Statistic, ToleranceBand,
+    Discharged, Expect, ForcePart, GasPlace, Measure, ParticlePlace, Passing, Probe, Quantity,
+    Statistic, ToleranceBand,
 };
 
 /// A checked case.
@@ -307,5 +308,20 @@ pub struct Output {
     /// Gas fields of the snapshots: temperature, velocity, pressure, density, void_fraction.
     pub gas: Vec<String>,
     /// Particle fields of the snapshots: temperature, velocity, heat, mass, solids.
+    pub particles: Vec<String>,
+    /// Fields of which means over time are written.
+    pub means: Option<MeanSpec>,
+}
+
+/// Means of fields over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeanSpec {
+    /// Process time from which they are taken.
+    pub from: Ticks,
+    /// Process time up to which they are taken.
+    pub to: Ticks,
+    /// Fields of the gas.
+    pub gas: Vec<String>,
+    /// Quantities of particles, on the cells of the gas.
     pub particles: Vec<String>,
 }

@@ -15,7 +15,9 @@ use calcine_tuning::DifferenceForm;
 
 use crate::tuning::curves::Delimiter;
 
-pub(super) use super::model::{Inside, MappingSpec, MotionKind, MotionSpec, Statistic};
+pub(super) use super::model::{
+    Discharged, ForcePart, Inside, MappingSpec, MotionKind, MotionSpec, Passing, Statistic,
+};
 
 /// A choice between words.
 pub(super) trait CaseWord: Copy + 'static {
@@ -263,6 +265,15 @@ case_words! {
         "mass" => ParticleField("mass"),
         "diameter" => ParticleField("diameter"),
         "mass_fraction" => ParticleField("mass_fraction"),
+        "conversion" => ParticleField("conversion"),
+    }
+    Passing { "heat" => Passing::Heat, "mass" => Passing::Mass, "species" => Passing::Species }
+    ForcePart { "pressure" => ForcePart::Pressure, "viscous" => ForcePart::Viscous, "total" => ForcePart::Total }
+    Discharged {
+        "mass_flow" => Discharged::MassFlow,
+        "mass" => Discharged::Mass,
+        "count" => Discharged::Count,
+        "residence_time" => Discharged::ResidenceTime,
     }
     Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max, "sum" => Statistic::Sum, "deviation" => Statistic::Deviation }
 }

@@ -34,6 +34,8 @@ pub(super) const DRAFT: &str = "results.h5.new";
 pub(crate) const GAS: &str = "gas.pvd";
 /// Collection of the snapshots of the particles.
 pub(crate) const PARTICLES: &str = "particles.pvd";
+/// Name of the file of means over time.
+pub(super) const MEANS: &str = "means.vtu";
 /// Folders of the snapshots of the gas, of the particles and of the probes.
 pub(super) const SNAPSHOTS: [&str; 3] = ["gas", "particles", "probes"];
 
@@ -68,7 +70,7 @@ pub(crate) fn is_computed(name: &str) -> bool {
 pub(crate) fn is_written(name: &str) -> bool {
     let name = name.strip_suffix(UNFINISHED).unwrap_or(name);
     let own = [
-        CASE, COMMAND, GAS, PARTICLES, STATUS, STORE, SUMMARY, REPORT,
+        CASE, COMMAND, GAS, MEANS, PARTICLES, STATUS, STORE, SUMMARY, REPORT,
     ];
     own.contains(&name) || SNAPSHOTS.contains(&name) || is_computed(name)
 }

@@ -13,7 +13,10 @@ pub mod flows;
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 pub mod inertial_number;
 pub(crate) mod marked;
+mod means;
 mod moment;
+mod open;
+mod passages;
 mod probe;
 pub mod quantities;
 pub mod read;

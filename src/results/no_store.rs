@@ -57,6 +57,15 @@ impl Store {
         Ok(())
     }
 
+    /// Writes nothing.
+    pub fn means(
+        &mut self,
+        _interval: [f64; 3],
+        _fields: &[Field<'_>],
+    ) -> Result<(), ResultsError> {
+        Ok(())
+    }
+
     /// Renames nothing.
     pub fn rename(&mut self, _to: &Path) -> Result<(), ResultsError> {
         Ok(())

@@ -7,6 +7,7 @@ use calcine_coupler::physics::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::ResultsError;
+use super::passages::{self, OutflowTrail};
 use super::probe::Site;
 use super::snapshot::SOLIDS;
 use super::summary::{QuantityResult, Verdict};
@@ -53,6 +54,20 @@ fn weighted(which: Statistic, pairs: impl Iterator<Item = (f64, f64)> + Clone) -
     }
 }
 
+/// What a measure looks at beside the moment.
+#[derive(Clone, Copy)]
+pub(super) struct RunSoFar<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// Where its probes are.
+    pub sites: &'a [Site],
+    /// What left through outlets before.
+    pub outflow: &'a OutflowTrail,
+}
+
+/// The column of the mass with which a particle came.
+const FIRST_MASS: &str = "first_mass";
+
 /// Refuses patches that the mesh lacks.
 pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError> {
     let patches: &[String] = match &quantity.measure {
@@ -60,7 +75,9 @@ pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError
         Measure::Gas {
             over: GasPlace::Patch(patch),
             ..
-        } => std::slice::from_ref(patch),
+        }
+        | Measure::Flow { patch, .. }
+        | Measure::Force { patch, .. } => std::slice::from_ref(patch),
         _ => return Ok(()),
     };
     match patches.iter().find(|name| mesh.patch(name).is_none()) {
@@ -80,7 +97,8 @@ pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError
 
 /// The quantity at a moment, in its unit; NaN where it does not exist: a particle that is gone, a
 /// pressure before the first window, when none is solved yet.
-pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: &[Site]) -> f64 {
+pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, run: RunSoFar<'_>) -> f64 {
+    let RunSoFar { case, sites, .. } = run;
     match &quantity.measure {
         Measure::Difference { field, .. } | Measure::Gas { field, .. }
             if field == "pressure" && moment.windows == 0 =>
@@ -116,9 +134,14 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
             over,
             statistic: which,
         } => {
-            let values = of_particles(moment, (field, quantity.column));
+            let of = (field.as_str(), quantity.column);
+            let values = of_particles(case, moment, of);
+            let shares = shares(case, moment, of);
             let (bed, all) = (moment.particles, &values[..]);
-            let pair = |(row, &value): (usize, &f64)| (value, bed.weight_of(row));
+            let pair = |(row, &value): (usize, &f64)| {
+                let share = shares.get(row).copied().unwrap_or(1.0);
+                (value, bed.weight_of(row) * share)
+            };
             let values: Vec<(f64, f64)> = match over {
                 ParticlePlace::Among { populations, zone } => {
                     let counts = |row: usize| {
@@ -127,6 +150,8 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
                             .as_ref()
                             .is_none_or(|all| own.is_some_and(|own| all.contains(own)))
                             && zone.is_none_or(|zone| zone.holds(bed.position[row]))
+                            // A particle that came without a solid has no conversion of it.
+                            && shares.get(row).is_none_or(|share| *share > 0.0)
                     };
                     let rows = all.iter().enumerate();
                     rows.filter(|(row, _)| counts(*row)).map(pair).collect()
@@ -147,6 +172,13 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
             let own = warm.filter(|(name, _)| belongs(name, wall));
             own.map(|(_, heat)| heat).sum()
         }
+        Measure::Flow { what, patch } => passages::flow(moment, *what, patch, quantity.column),
+        Measure::Force { part, patch, along } => {
+            passages::force(moment, *part, patch, along, case.gas.pressure)
+        }
+        Measure::Discharge { what, outlet, over } => {
+            passages::discharge(moment, run.outflow, *what, *outlet, *over)
+        }
         Measure::Body { body } => {
             let bodies = moment.bodies;
             let own = bodies.names().zip(bodies.temperature());
@@ -157,7 +189,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
         Measure::Particle { field, number } => number
             .checked_sub(1)
             .and_then(|place| {
-                of_particles(moment, (field, quantity.column))
+                of_particles(case, moment, (field, quantity.column))
                     .get(place)
                     .copied()
             })
@@ -170,8 +202,33 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
     }
 }
 
+/// Mass in kg with which each particle came of a solid; zero of a material without a composition.
+fn first_amounts(case: &Case, moment: &CommittedState<'_>, solid: Option<usize>) -> Vec<f64> {
+    let first = moment.models.named(FIRST_MASS);
+    let first = first
+        .and_then(|column| column.scalars())
+        .unwrap_or_default();
+    let bed = moment.particles;
+    let of_row = |row: usize| {
+        let population = case.particles.get(*bed.population.get(row)? as usize)?;
+        let share = case.chemistry.compositions.get(population.material)?;
+        let share = share.get(solid?)?;
+        Some(share * first.get(row)?)
+    };
+    let amounts = (0..bed.len()).map(|row| of_row(row).filter(|mass| mass.is_finite()));
+    amounts.map(|mass| mass.unwrap_or(0.0)).collect()
+}
+
+/// How much each particle counts beside its weight: for conversions what it came with of the solid, else all alike.
+fn shares(case: &Case, moment: &CommittedState<'_>, (field, solid): Field<'_>) -> Vec<f64> {
+    match field {
+        "conversion" => first_amounts(case, moment, solid),
+        _ => Vec::new(),
+    }
+}
+
 /// A field of all particles; speeds are those of process time.
-fn of_particles(moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<f64> {
+fn of_particles(case: &Case, moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<f64> {
     let bed = moment.particles;
     let acceleration = moment.window.map_or(1.0, |window| window.acceleration());
     let speeds = |rates: &[Vec3]| {
@@ -204,6 +261,18 @@ fn of_particles(moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<
             let solids = moment.models.shown(SOLIDS);
             let of = column.and_then(|k| solids.get(k));
             of.and_then(ParticleColumn::scalars).unwrap_or_default()
+        }
+        "conversion" => {
+            let first = first_amounts(case, moment, column);
+            let left = of_particles(case, moment, ("mass_fraction", column));
+            let rows = first.iter().enumerate();
+            // NaN of a particle that came without the solid.
+            rows.map(|(row, first)| {
+                let left = left.get(row).copied().unwrap_or(f64::NAN);
+                1.0 - left * moment.particle_mass[row] / first
+            })
+            .map(|share| if share.is_finite() { share } else { f64::NAN })
+            .collect()
         }
         _ => moment.particle_temperature.to_vec(),
     }
@@ -297,15 +366,15 @@ impl Captured {
 
     /// Takes the value of each quantity at the first moment at or after its time; a quantity
     /// without a time keeps its latest value where `latest` is set.
-    pub fn take(&mut self, case: &Case, moment: &CommittedState<'_>, sites: &[Site], latest: bool) {
+    pub fn take(&mut self, moment: &CommittedState<'_>, run: RunSoFar<'_>, latest: bool) {
         let time = moment.clocks.process.seconds();
-        for (slot, quantity) in self.values.iter_mut().zip(&case.quantities) {
+        for (slot, quantity) in self.values.iter_mut().zip(&run.case.quantities) {
             let wanted = match expected_at(quantity) {
                 Some(at) => slot.is_none() && time >= at,
                 None => latest,
             };
             if wanted {
-                let value = evaluate(quantity, moment, sites);
+                let value = evaluate(quantity, moment, run);
                 *slot = Some((Some(value).filter(|value| value.is_finite()), time));
             }
         }

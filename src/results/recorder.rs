@@ -4,15 +4,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use calcine_coupler::findings::{Finding, FindingKind};
+use calcine_coupler::findings::Finding;
 use calcine_coupler::ledger::BalanceLine as LedgerSums;
 use calcine_coupler::observer::{CommittedState, CutNotice, Observer, ObserverError, Timing};
 use calcine_coupler::part::SolverInfo;
 use calcine_coupler::time::{Ticks, Window};
 
+use super::means::FieldMeans;
 use super::moment::SnapshotMoment;
+use super::open::{feeds_wait, open_balance};
+use super::passages;
 use super::probe::{self, Site};
-use super::quantities::{self, Captured};
+use super::quantities::{self, Captured, RunSoFar};
 use super::rebuild::{self, rebuild};
 use super::resume::{self, Counters, Restored};
 use super::series::{self, Row, TRACKED_PARTICLES, Table};
@@ -71,6 +74,12 @@ pub struct Recorder {
     /// Their wall times of the gas' phases.
     gas_phases_before: BTreeMap<String, f64>,
     watch: Watch,
+    /// Means over time, once the run has begun.
+    means: Option<FieldMeans>,
+    /// The checkpoint to go on from.
+    resumed_from: Option<PathBuf>,
+    /// By how many ps of process time measures look back.
+    reach: i64,
     open: Option<Open>,
     summary: Option<Summary>,
 }
@@ -117,6 +126,9 @@ impl Recorder {
             gas_phases_before: counters.gas_phases.clone(),
             counters,
             watch: Watch::new(out, 0.0),
+            means: None,
+            resumed_from: resume.map(Path::to_owned),
+            reach: passages::reach(case),
             open: None,
             summary: None,
         })
@@ -152,6 +164,7 @@ impl Recorder {
         if !self.resumed && moment.particles.len() <= TRACKED_PARTICLES {
             self.counters.tracked = moment.particles.id.to_vec();
         }
+        self.begin_means(moment)?;
         let columns = series::columns(&self.case, moment);
         let sites = probe::sites(&self.case.probes, moment.mesh)?;
         let tracked = &self.counters.tracked;
@@ -175,6 +188,7 @@ impl Recorder {
         });
         self.collect()?;
         self.smoothed(moment);
+        self.note_outflow(moment);
         if !self.resumed {
             self.row(moment)?;
             self.snapshot(moment)?;
@@ -204,7 +218,7 @@ impl Recorder {
         );
         let output = &self.case.output;
         let inside = snapshot::inside(output, moment);
-        rebuild(
+        let mut store = rebuild(
             &self.directory,
             &rebuild::Source {
                 case: &self.case,
@@ -217,17 +231,62 @@ impl Recorder {
                 gas: &snapshot::gas_fields(output, self.case.gas.properties.species(), moment),
                 particles: &snapshot::particle_fields(output, &inside, moment),
             },
-        )
+        )?;
+        let over = |means: &&FieldMeans| means.is_over(moment.clocks.process);
+        if let Some(means) = self.means.as_ref().filter(over) {
+            means.with_fields(moment.mesh, |fields| store.means(means.interval(), fields))?;
+        }
+        Ok(store)
+    }
+
+    /// Begins means over time, or takes them up again.
+    fn begin_means(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
+        let Some(spec) = &self.case.output.means else {
+            return Ok(());
+        };
+        let species = self.case.gas.properties.species();
+        let mut means = FieldMeans::new(spec, species, moment);
+        if let Some(checkpoint) = &self.resumed_from {
+            means.restore(checkpoint)?;
+        }
+        if !means.is_over(moment.clocks.process) {
+            // Those of a run that had come further, or that begins again.
+            resume::remove(&self.directory.join(files::MEANS))?;
+        }
+        self.means = Some(means);
+        Ok(())
+    }
+
+    /// Adds a window to the means over time; when their interval is over, they are written.
+    fn average(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
+        let Some(means) = &mut self.means else {
+            return Ok(());
+        };
+        let Some(window) = moment.window else {
+            return Ok(());
+        };
+        means.add(self.case.gas.properties.species(), moment);
+        let was_over = means.is_over(window.start.process);
+        if was_over || !means.is_over(moment.clocks.process) {
+            return Ok(());
+        }
+        let (Some(means), Some(open)) = (&self.means, &mut self.open) else {
+            return Ok(());
+        };
+        let path = self.directory.join(files::MEANS);
+        let interval = means.interval();
+        means.with_fields(moment.mesh, |fields| {
+            vtk::write_gas(&path, moment.mesh, &open.cells, interval[1], fields)?;
+            open.store.means(interval, fields)
+        })
     }
 
     fn advance(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         self.count(moment);
+        self.average(moment)?;
         let now = moment.clocks.process;
         if self.counters.captured.is_due(&self.case, now.seconds()) {
-            let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
-            self.counters
-                .captured
-                .take(&self.case, moment, sites, false);
+            self.capture(moment, false);
         }
         if now.count() >= self.counters.next_row {
             self.row(moment)?;
@@ -255,6 +314,9 @@ impl Recorder {
         counters.processor = self.processor(moment.timing);
         counters.gas_phases = self.gas_phases(moment.timing);
         resume::save(&self.directory, directory, counters)?;
+        if let Some(means) = &self.means {
+            means.save(directory)?;
+        }
         self.summarise(moment, Verdict::Running)
     }
 
@@ -270,8 +332,7 @@ impl Recorder {
         if let Some(voids) = voids::of_bed(&self.case, &moment.particles) {
             voids.write(&self.directory)?;
         }
-        let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
-        self.counters.captured.take(&self.case, moment, sites, true);
+        self.capture(moment, true);
         if let Some(words) = self.pace_warning() {
             tracing::warn!("{words}");
         }
@@ -283,6 +344,22 @@ impl Recorder {
         }
         let results = self.counters.captured.results(&self.case, true);
         self.summarise(moment, quantities::overall(results.values()))
+    }
+
+    /// What measures look at beside the moment.
+    fn so_far(&self) -> RunSoFar<'_> {
+        RunSoFar {
+            case: &self.case,
+            sites: self.open.as_ref().map_or(&[][..], |open| &open.sites),
+            outflow: &self.counters.outflow,
+        }
+    }
+
+    /// Keeps the values of quantities whose time has come, or with `latest` of all.
+    fn capture(&mut self, moment: &CommittedState<'_>, latest: bool) {
+        let mut captured = std::mem::take(&mut self.counters.captured);
+        captured.take(moment, self.so_far(), latest);
+        self.counters.captured = captured;
     }
 
     /// Whether the bed was moved too fast, in words.
@@ -297,9 +374,17 @@ impl Recorder {
         *largest = largest.max(moment.smoothed_share);
     }
 
+    /// Notes what left through outlets.
+    fn note_outflow(&mut self, moment: &CommittedState<'_>) {
+        if !moment.outlets.is_empty() {
+            self.counters.outflow.note(moment, self.reach);
+        }
+    }
+
     /// Adds the window's convergence.
     fn count(&mut self, moment: &CommittedState<'_>) {
         self.smoothed(moment);
+        self.note_outflow(moment);
         let time = moment.clocks.process.seconds();
         let span = moment
             .window
@@ -335,9 +420,8 @@ impl Recorder {
             Some(window) => window.acceleration(),
             None => self.case.time.acceleration.at(moment.clocks.process).0,
         };
-        let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
         let tracked = &self.counters.tracked;
-        let row = series::row(&self.case, moment, acceleration, tracked, sites);
+        let row = series::row(moment, acceleration, tracked, self.so_far());
         let every = self
             .case
             .output
@@ -492,8 +576,7 @@ impl Recorder {
         let case = &self.case;
         let over = verdict != Verdict::Running;
         let mut captured = self.counters.captured.clone();
-        let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
-        captured.take(case, moment, sites, true);
+        captured.take(moment, self.so_far(), true);
         let steps = case.time.acceleration.steps();
         let summary = Summary {
             format: 1,
@@ -572,15 +655,6 @@ impl Recorder {
     }
 }
 
-/// Energy in J that moves a kg of particles and gas below which none does.
-const STILL: f64 = 1e-6;
-
-/// Share of what feeds should bring that may wait at the end of a run.
-const WAITING: f64 = 0.02;
-
-/// Relative error above which a balance is open.
-const OPEN: f64 = 1e-3;
-
 impl Open {
     fn keep(&mut self, row: Row) -> Result<(), ResultsError> {
         self.pending.push(row);
@@ -616,36 +690,6 @@ pub fn unoccupied(out: &Path) -> Result<(), ResultsError> {
         state: summary.verdict.state(),
         time: summary.process_time_s,
     })
-}
-
-/// The worse of the balances of mass and energy where it is open by more than round-off and solvers leave.
-fn open_balance(moment: &CommittedState<'_>) -> Option<Finding> {
-    let ledger = moment.ledger;
-    // Where nothing moves there is round-off alone.
-    let moves = || {
-        let particles = moment.particles;
-        let of_particles = (0..particles.len()).map(|row| particles.row_mass(row));
-        let cells = moment.gas.density.iter().zip(moment.mesh.cell_volume());
-        let of_gas = cells
-            .zip(&moment.bed.void_fraction)
-            .map(|((density, volume), pores)| density * pores * volume);
-        let mass = of_particles.sum::<f64>() + of_gas.sum::<f64>();
-        ledger.energy.throughput > STILL * mass
-    };
-    let mut worst = ledger.mass.relative_error();
-    let energy = ledger.energy.relative_error();
-    if energy > worst.max(OPEN) && moves() {
-        worst = energy;
-    }
-    (worst > OPEN).then(|| Finding::unconverged(FindingKind::OpenBalance, worst, Some(OPEN)))
-}
-
-/// What feeds should have brought and found no room for.
-fn feeds_wait(moment: &CommittedState<'_>) -> Option<Finding> {
-    let [fed, _] = &moment.ledger.fed_and_discharged;
-    let missing = moment.waiting / (fed.mass + moment.waiting);
-    (missing > WAITING)
-        .then(|| Finding::unconverged(FindingKind::FeedsWait, missing, Some(WAITING)))
 }
 
 fn status_of(summary: &Summary) -> Status {

@@ -14,6 +14,7 @@ use super::flows::FlowSummary;
 use super::inertial_number::InertialNumberStatistics;
 use super::marked::FileMark;
 use super::moment::SnapshotMoment;
+use super::passages::OutflowTrail;
 use super::quantities::Captured;
 use super::read::{Series, collection};
 use super::steps::StepSummary;
@@ -83,6 +84,9 @@ pub(super) struct Counters {
     /// What passed so far.
     #[serde(default)]
     pub flows: FlowSummary,
+    /// What left through outlets before.
+    #[serde(default)]
+    pub outflow: OutflowTrail,
     /// Wall times so far.
     pub wall: WallTimes,
     /// Processor times so far.
@@ -296,7 +300,7 @@ pub fn clear_start(results: &Path) -> Result<(), ResultsError> {
 }
 
 /// Removes a file where there is one.
-fn remove(path: &Path) -> Result<(), ResultsError> {
+pub(super) fn remove(path: &Path) -> Result<(), ResultsError> {
     match fs::remove_file(path) {
         Err(cause) if cause.kind() != ErrorKind::NotFound => {
             Err(ResultsError::file("remove", path)(cause))

@@ -7,8 +7,7 @@ use calcine_coupler::step_error::StepError;
 use calcine_coupler::time::Window;
 
 use super::marked::{FileMark, MarkedFile};
-use super::probe::Site;
-use super::quantities::{evaluate, statistic};
+use super::quantities::{RunSoFar, evaluate, statistic};
 use super::{ResultsError, SERIES, inertial_number, sheet};
 use crate::case::model::{Case, MotionKind, MotionSpec, Statistic};
 
@@ -193,12 +192,12 @@ pub(super) struct Row {
 
 /// The row of a moment, in the order of [`columns`].
 pub(super) fn row(
-    case: &Case,
     moment: &CommittedState<'_>,
     acceleration: f64,
     tracked: &[u64],
-    sites: &[Site],
+    run: RunSoFar<'_>,
 ) -> Row {
+    let case = run.case;
     let mut values = vec![
         moment.clocks.process.seconds(),
         moment.clocks.motion.seconds(),
@@ -208,7 +207,7 @@ pub(super) fn row(
     values.extend(
         case.quantities
             .iter()
-            .map(|quantity| evaluate(quantity, moment, sites)),
+            .map(|quantity| evaluate(quantity, moment, run)),
     );
     for which in [Statistic::Mean, Statistic::Min, Statistic::Max] {
         values.push(statistic(which, moment.particle_temperature));

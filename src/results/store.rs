@@ -20,6 +20,9 @@ use super::series::{Column, Row};
 use super::snapshot::{Field, Values, lengths_of};
 use crate::case::model::Case;
 
+/// The group of means.
+const MEANS: &str = "means";
+
 /// Rows of one chunk of the series.
 const CHUNK_ROWS: usize = 256;
 /// Values of one chunk of a field.
@@ -200,6 +203,24 @@ impl Store {
             Ok(())
         };
         write().map_err(failure("write a snapshot to", &self.path))
+    }
+
+    /// Writes the means of fields over an interval from and to process times in s, of which so much has passed; in place of those that
+    /// are there.
+    pub fn means(&mut self, interval: [f64; 3], fields: &[Field<'_>]) -> Result<(), ResultsError> {
+        let write = || -> hdf5::Result<()> {
+            if self.file.link_exists(MEANS) {
+                self.file.unlink(MEANS)?;
+            }
+            let group = self.file.create_group(MEANS)?;
+            for (name, value) in ["from", "to", "averaged"].into_iter().zip(interval) {
+                group.new_attr::<f64>().create(name)?.write_scalar(&value)?;
+            }
+            fields
+                .iter()
+                .try_for_each(|field| write_field(&group, field))
+        };
+        write().map_err(failure("write means to", &self.path))
     }
 
     /// Takes the place of the file of another name.

@@ -138,6 +138,7 @@ pub fn case() -> Case {
                 .map(String::from)
                 .into(),
             particles: ["temperature", "heat"].map(String::from).into(),
+            means: None,
         },
         probes: vec![Probe {
             name: "axis".into(),
@@ -407,6 +408,8 @@ impl World {
             step_error: None,
             courant: None,
             exchange_convergence: &SETTLED,
+            patch_flows: &[],
+            outlets: &[],
             bodies: &self.bodies,
             reservoirs: &[],
             reservoir_heat: &[],

@@ -302,6 +302,8 @@ void Foam::calcine::gas::balanceSpecies(report& result) const
             const label start = patch.start() - mesh_.nInternalFaces();
             const SubField<scalar> flow(speciesFlow_[k], patch.size(), start);
             own.boundary -= window_.storageSpan*gSum(flow);
+            // All ranks are summed up together.
+            result.patches[patch.index()][5 + k] -= sum(flow);
             own.boundaryMagnitude += window_.storageSpan*gSumMag(flow);
         }
     }

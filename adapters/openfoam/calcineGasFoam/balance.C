@@ -31,9 +31,27 @@ void Foam::calcine::gas::finishReport(report& result) const
         // all that the cells of a fluid of constant density store.
         result.mass.boundaryMagnitude = window_.storageSpan*circulating;
     }
+    result.patches.setSize
+    (
+        mesh_.boundaryMesh().nNonProcessor(), scalarList(5 + speciesNames().size(), Zero)
+    );
+    forAll(result.patches, patchi)
+    {
+        if (boundary_.of(patchi) != passage::within)
+        {
+            result.patches[patchi][1] -= sum(phi_.boundaryField()[patchi]);
+        }
+    }
     balanceSpecies(result);
     balanceEnergy(result);
     balanceMomentum(result);
+    for (scalarList& flows : result.patches)
+    {
+        for (scalar& flow : flows)
+        {
+            reduce(flow, sumOp<scalar>());
+        }
+    }
 }
 
 
@@ -86,6 +104,7 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
               + (carried_.valid() ? carried_->boundaryField()[patchi][i] : 0)
               + (oblique ? oblique->boundaryField()[patchi][i] : 0);
             energy.boundary -= window_.storageSpan*out;
+            result.patches[patchi][0] -= out;
             energy.boundaryMagnitude += window_.storageSpan*mag(out);
         }
     }
@@ -135,6 +154,7 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
                   - stressForce_->boundaryField()[patchi][i][axis]
                   + (oblique ? oblique->boundaryField()[patchi][i][axis] : 0);
                 momentum.boundary -= span*out;
+                result.patches[patchi][2 + axis] -= out;
                 momentum.boundaryMagnitude += span*mag(out);
             }
         }

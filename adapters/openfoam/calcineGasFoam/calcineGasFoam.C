@@ -198,6 +198,15 @@ void send
         append(balances, species);
     }
     link.put("balances", balances);
+    if (gas.patches())
+    {
+        DynamicList<scalar> flows;
+        for (const scalarList& flow : result.patches)
+        {
+            flows.append(flow);
+        }
+        link.put("patch_flows", flows);
+    }
     const vector& clock = result.storageClock;
     link.put("storage_clock", scalarList{clock.x(), clock.y(), clock.z()});
     const scalarList convergence
@@ -210,10 +219,11 @@ void send
 }
 
 // Nothing received, nothing solved: what goes with a state.
-calcine::report emptyReport(label cells, label species)
+calcine::report emptyReport(label cells, label species, label patches)
 {
     calcine::report empty;
     empty.species.setSize(species);
+    empty.patches.setSize(patches, scalarList(5 + species, Zero));
     empty.heat.setSize(cells, 0);
     empty.drag.setSize(cells, Zero);
     return empty;
@@ -276,7 +286,7 @@ void serve
                 break;
             case CALCINE_CHECKPOINT:
                 gas.checkpoint(link.text());
-                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells, gas.speciesNames().size()));
+                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells, species, gas.patches()));
                 break;
             case CALCINE_BOUNDARY:
                 gas.setBoundary(link.text());
@@ -379,7 +389,7 @@ void run(const argList& args, calcine::link& link)
     }
     link.greet(own);
     link.claim(numbers.cells);
-    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size()));
+    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size(), gas.patches()));
     calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
     serve(link, gas, numbers, log, columns);
     Info<< "End" << endl;

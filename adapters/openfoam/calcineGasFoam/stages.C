@@ -36,6 +36,14 @@ void joinFirst(calcine::report& result, const calcine::report& first, scalar amo
     {
         scaleAndAdd(result.species[k], first.species[k], amount);
     }
+    forAll(result.patches, patchi)
+    {
+        scalarList& flows = result.patches[patchi];
+        forAll(flows, k)
+        {
+            flows[k] = stageShare*flows[k] + (1 - stageShare)*first.patches[patchi][k];
+        }
+    }
     result.storageClock += amount*first.storageClock;
     result.outerIterations += first.outerIterations;
     result.linearIterations += first.linearIterations;

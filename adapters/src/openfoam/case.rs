@@ -100,12 +100,16 @@ impl OpenfoamCase<'_> {
     /// template's.
     pub(super) fn catalogue(&self) -> Catalogue {
         let turbulent = !self.setup.turbulence.is_laminar();
-        let mut catalogue = Catalogue::gas(self.setup.properties.species().len(), turbulent);
+        let species = self.setup.properties.species().len();
+        let mut catalogue = Catalogue::gas(species, turbulent);
         if self.setup.turbulence.is_in_bed() {
             catalogue = catalogue.with_bed_eddies();
         }
         if !self.solver.is_stock() && dictionaries::tells_backflow(self.setup) {
             catalogue = catalogue.with_backflow_report();
+        }
+        if !self.solver.is_stock() {
+            catalogue = catalogue.with_patch_report(species, self.mesh.patches().len());
         }
         let models = |folder: &Path| folder.join("constant/turbulenceProperties").is_file();
         match !self.solver.is_stock() && (turbulent || self.template.is_some_and(models)) {

@@ -150,6 +150,9 @@ typedef enum calcine_failure {
  *   backflow 3 [1,m/s,1], once a rank: gas that comes in through outlets in the state of the cell behind: faces of
  *     the rank with it, the largest superficial velocity inwards, the number of the cell there in the whole mesh; 0 0
  *     0 where there is none. Of a gas whose catalogue has it.
+ *   patch_flows (5 + N) a patch [W,kg/s,N,kg/s], once a rank: of all ranks, patch by patch in the order of the mesh,
+ *     means over the window and + into the gas: heat (sensible enthalpy from 298.15 K on, with conduction), mass,
+ *     momentum along x, y, z without pressure, then each species. Of a gas whose catalogue has it.
  *   turbulent_energy 1 [m^2/s^2]: k. Of a turbulent gas.
  *   dissipation 1 [m^2/s^3]: epsilon. Of a turbulent gas.
  *   eddy_viscosity 1 [Pas]: void fraction times eddy viscosity; 0 in a bed at which eddies end. Of a turbulent gas.

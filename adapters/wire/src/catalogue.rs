@@ -124,6 +124,7 @@ impl Catalogue {
             | ColumnPresence::BedEddies
             | ColumnPresence::TurbulenceReport
             | ColumnPresence::BackflowReport
+            | ColumnPresence::PatchReport
             | ColumnPresence::MovingDrag
             | ColumnPresence::Weights => false,
         })
@@ -166,6 +167,23 @@ impl Catalogue {
     /// The same catalogue with that column.
     pub fn with_backflow_report(mut self) -> Self {
         self.fields.extend(Self::backflow_report());
+        self
+    }
+
+    /// The column of a gas of so many species that says what passes so many patches; none without patches.
+    pub fn patch_report(species: usize, patches: usize) -> Vec<Field> {
+        let own = |presence| presence == ColumnPresence::PatchReport;
+        let mut fields = Self::of_table(columns::GAS, species, own).fields;
+        fields
+            .iter_mut()
+            .for_each(|field| field.components *= patches);
+        fields.retain(|field| field.components > 0);
+        fields
+    }
+
+    /// The same catalogue with that column.
+    pub fn with_patch_report(mut self, species: usize, patches: usize) -> Self {
+        self.fields.extend(Self::patch_report(species, patches));
         self
     }
 

@@ -12,6 +12,8 @@ pub enum ColumnComponents {
     Species,
     /// Balances: seven numbers each of mass, energy, three of momentum, and each species.
     Balances,
+    /// Of each patch one flow of heat, of mass, three of momentum, and one of each species; the number of one patch.
+    PatchFlow,
 }
 
 /// Which links have a column.
@@ -29,6 +31,8 @@ pub enum ColumnPresence {
     BedEddies,
     /// Those of a gas that says what comes back in through outlets.
     BackflowReport,
+    /// Those of a gas that says what passes its patches.
+    PatchReport,
     /// Those of a gas that answers commits with how its equations of turbulence were solved.
     TurbulenceReport,
     /// Those of particles that feel drag as they move.
@@ -63,6 +67,7 @@ impl ColumnComponents {
             ColumnComponents::Fixed(count) => count,
             ColumnComponents::Species => species,
             ColumnComponents::Balances => NUMBERS_OF_BALANCE * (5 + species),
+            ColumnComponents::PatchFlow => 5 + species,
         }
     }
 }
@@ -102,6 +107,11 @@ impl ProtocolColumn {
     const fn of_species(mut self) -> Self {
         self.components = ColumnComponents::Species;
         self.only(ColumnPresence::Species)
+    }
+
+    const fn of_patch_flows(mut self) -> Self {
+        self.components = ColumnComponents::PatchFlow;
+        self.per_rank().only(ColumnPresence::PatchReport)
     }
 
     const fn of_balances(mut self) -> Self {
@@ -158,6 +168,10 @@ pub const GAS: &[ProtocolColumn] = &[
         "gas that comes in through outlets in the state of the cell behind: faces of the rank with it, the largest \
          superficial velocity inwards, the number of the cell there in the whole mesh; 0 0 0 where there is none")
         .per_rank().only(ColumnPresence::BackflowReport),
+    column(State, "patch_flows", 5, "W,kg/s,N,kg/s",
+        "of all ranks, patch by patch in the order of the mesh, means over the window and + into the gas: heat (sensible \
+         enthalpy from 298.15 K on, with conduction), mass, momentum along x, y, z without pressure, then each species")
+        .of_patch_flows(),
     column(Start, "species_source", 1, "kg/s",
         "S: mass of a species to the gas of the cell is S - C Y, with Y at the end of the window").of_species(),
     column(Start, "species_coefficient", 1, "kg/s",

@@ -196,6 +196,7 @@ fn one(text: &mut String, column: &ProtocolColumn) {
         ColumnComponents::Fixed(count) => count.to_string(),
         ColumnComponents::Species => "N".into(),
         ColumnComponents::Balances => format!("{NUMBERS_OF_BALANCE} (5 + N)"),
+        ColumnComponents::PatchFlow => "(5 + N) a patch".into(),
     };
     let extent = if column.per_item { "" } else { ", once a rank" };
     let presence = match column.presence {
@@ -204,6 +205,7 @@ fn one(text: &mut String, column: &ProtocolColumn) {
         ColumnPresence::Species => " Of a gas of N species.",
         ColumnPresence::Turbulent => " Of a turbulent gas.",
         ColumnPresence::BedEddies => " Of a gas whose eddies go on in the bed.",
+        ColumnPresence::PatchReport => " Of a gas whose catalogue has it.",
         ColumnPresence::BackflowReport => " Of a gas whose catalogue has it.",
         ColumnPresence::TurbulenceReport => " Of a gas that answers COMMIT.",
         ColumnPresence::MovingDrag => " Where drag is pushed as a coefficient.",

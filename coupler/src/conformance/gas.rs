@@ -10,7 +10,7 @@ use super::{LawError, LawOutcome, holds, is_refused, same, supervisor, window};
 use crate::error::{FailureKind, PartError};
 use crate::mesh::block::{BoxSpec, box_mesh};
 use crate::mesh::{Mesh, MeshError};
-use crate::part::{Balance, Bed, CellExchange, CellReceived, Convergence, Gas};
+use crate::part::{Balance, Bed, CellExchange, CellReceived, Convergence, Gas, PatchFlow};
 use crate::setup::{Convection, GasControls, GasPatch, GasSetup, Schedule, WallHeat, WallVelocity};
 use crate::supervisor::Supervisor;
 use crate::time::GasStorage;
@@ -374,6 +374,38 @@ fn balances_close(column: &mut Column<'_, '_>) -> Result<(), LawError> {
         holds(received.mass.boundary_magnitude > 0.0, || {
             "no gas flows".into()
         })?;
+        patches_add_up(received)?;
+    }
+    Ok(())
+}
+
+/// What passes the patches, where the gas tells it, is what passes the boundary.
+fn patches_add_up(received: &CellReceived) -> Result<(), LawError> {
+    let patches = &received.patches;
+    if patches.is_empty() {
+        return Ok(());
+    }
+    let sum = |of: &dyn Fn(&PatchFlow) -> f64| patches.iter().map(of).sum::<f64>();
+    let [x, y, z] = &received.momentum;
+    let momentum = [x, y, z].map(|one| one.boundary_magnitude).iter().sum();
+    for (name, flow, span, balance, size) in [
+        ("mass", sum(&|one| one.mass), SPAN[1], &received.mass, 0.0),
+        ("heat", sum(&|one| one.heat), SPAN[1], &received.energy, 0.0),
+        ("momentum", sum(&|one| one.momentum.x), SPAN[0], x, momentum),
+        ("momentum", sum(&|one| one.momentum.y), SPAN[0], y, momentum),
+        ("momentum", sum(&|one| one.momentum.z), SPAN[0], z, momentum),
+    ] {
+        let size = balance.boundary_magnitude.max(size);
+        holds(
+            (span * flow - balance.boundary).abs() <= 1e-12 * size,
+            || {
+                format!(
+                    "the {name} through the patches adds up to {}, that through the boundary is {}",
+                    span * flow,
+                    balance.boundary
+                )
+            },
+        )?;
     }
     Ok(())
 }

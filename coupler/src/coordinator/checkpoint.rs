@@ -119,6 +119,7 @@ impl CoupledRun {
             .collect();
         state.set_f64s("traffic_moved", &moved);
         self.plan.feeds_and_outlets.record(&mut state);
+        self.plan.feeds_and_outlets.outflows.record(&mut state);
         self.record_controls(&mut state);
         self.record_identity(&mut state);
         state
@@ -175,6 +176,7 @@ impl CoupledRun {
             *total = CarriedInventory::from_numbers(numbers);
         }
         self.plan.feeds_and_outlets.restore(&state)?;
+        self.plan.feeds_and_outlets.outflows.restore(&state)?;
         self.restore_particles(&state)?;
         self.exchange.exchange.heat.copy_from_slice(heat);
         self.bodies.resume(&state)?;

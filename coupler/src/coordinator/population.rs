@@ -13,6 +13,7 @@ use crate::findings::{Finding, FindingKind, FindingPlace};
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::models::{ParticleModels, PopulationNewcomer};
 use crate::motion::{LostParticles, ParticleChanges};
+use crate::outflows::Leaving;
 use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
@@ -53,6 +54,12 @@ impl CoupledRun {
         if due.change.is_empty() {
             return Ok(());
         }
+        let went: Vec<_> = due.rows.iter().copied().zip(due.outlets).collect();
+        self.note_outflow(&went);
+        if let Some(new) = due.change.insert.first() {
+            let outflows = &mut self.plan.feeds_and_outlets.outflows;
+            outflows.came(new.id, self.clocks.process.seconds());
+        }
         let moved = self.exchange_particles(
             supervisor,
             PopulationStep {
@@ -67,8 +74,26 @@ impl CoupledRun {
         Ok(())
     }
 
-    /// Ids of particles that left the mesh within a window, on a way through an outlet that takes all.
-    pub(super) fn gone_through_outlets(&self, window: &Window) -> Vec<u64> {
+    /// Notes rows that leave, each through an outlet.
+    fn note_outflow(&mut self, went: &[(usize, usize)]) {
+        if went.is_empty() {
+            return;
+        }
+        let fields = self.parts.particles.fields();
+        let outflows = &mut self.plan.feeds_and_outlets.outflows;
+        outflows.forget_below(fields.id.first().copied().unwrap_or(0));
+        for &(row, outlet) in went {
+            let particle = Leaving {
+                id: fields.id[row],
+                weight: fields.weight_of(row),
+                mass: fields.row_mass(row),
+            };
+            outflows.went(outlet, particle, self.clocks.process.seconds());
+        }
+    }
+
+    /// Ids of particles that left the mesh within a window, on a way through an outlet that takes all, each with the outlet.
+    pub(super) fn gone_through_outlets(&self, window: &Window) -> Vec<(u64, usize)> {
         let feeds = &self.plan.feeds_and_outlets;
         if !feeds.lets_out() || self.holds(window) {
             return Vec::new();
@@ -76,8 +101,8 @@ impl CoupledRun {
         let fields = self.parts.particles.fields();
         let before = &self.bed.mapped.position;
         let rows = self.bed.outside(fields.position).into_iter();
-        rows.filter(|&row| feeds.lets_out_between([before[row], fields.position[row]]))
-            .map(|row| fields.id[row])
+        let through = |row| feeds.outlet_between([before[row], fields.position[row]]);
+        rows.filter_map(|row| Some((fields.id[row], through(row)?)))
             .collect()
     }
 
@@ -85,14 +110,19 @@ impl CoupledRun {
     pub(super) fn discharge(
         &mut self,
         supervisor: &Supervisor,
-        ids: &[u64],
+        ids: &[(u64, usize)],
     ) -> Result<(), RunError> {
         if ids.is_empty() {
             return Ok(());
         }
         let own = self.parts.particles.fields().id.iter().enumerate();
-        let rows = own.filter(|(_, id)| ids.contains(id));
-        let rows = rows.map(|(row, _)| row).collect();
+        let went = own.filter_map(|(row, id)| {
+            let found = ids.iter().find(|(gone, _)| gone == id);
+            Some((row, found?.1))
+        });
+        let went: Vec<_> = went.collect();
+        self.note_outflow(&went);
+        let rows = went.into_iter().map(|(row, _)| row).collect();
         let moved = self.take_out(supervisor, rows)?;
         let [_, went] = &mut self.ledger.fed_and_discharged;
         went.add_all(&moved.gone);

@@ -83,6 +83,12 @@ impl ParticleModels {
         found.map(|one| self.gathered_column(one)).collect()
     }
 
+    /// The column of a name, be it part of the results or not; none where no model has it.
+    pub fn named(&self, name: &str) -> Option<ParticleColumn> {
+        let found = self.columns.iter().find(|one| one.column.name == name);
+        found.map(|one| self.gathered_column(one))
+    }
+
     fn gathered_column(&self, of: &MergedColumn) -> ParticleColumn {
         let kind = of.column.kind;
         let own: Vec<Option<Ragged>> = self

@@ -1,6 +1,6 @@
 //! Balances of an attempt: mass, energy and momentum of the gas, as its equations took them.
 
-use calcine_coupler::part::{Balance, CellReceived};
+use calcine_coupler::part::{Balance, CellReceived, PatchFlow};
 use calcine_coupler::physics::Vec3;
 
 use super::attempt::{AttemptFrame, CellProperties};
@@ -33,6 +33,30 @@ pub fn receive(
     received.energy = energy(frame, taken, &received.species, now);
     received.momentum = momenta(frame, material, momentum, now, &received.drag);
     received.storage_clock = storage_clock(frame, now);
+    patches(frame, momentum, taken, species, now, &mut received.patches);
+}
+
+/// What passes each patch.
+fn patches(
+    frame: &AttemptFrame<'_>,
+    momentum: &Momentum,
+    taken: &EnthalpyFlows,
+    species: &SpeciesEquations,
+    now: &GasState,
+    flows: &mut Vec<PatchFlow>,
+) {
+    let mass = frame.boundary.by_patch(|face| -now.flux[face]);
+    let along = [0, 1, 2].map(|axis| {
+        let inflow = |face| momentum.inflow(frame, now, face)[axis];
+        frame.boundary.by_patch(inflow)
+    });
+    flows.clear();
+    flows.extend(mass.iter().enumerate().map(|(patch, mass)| PatchFlow {
+        heat: taken.patches[patch],
+        mass: *mass,
+        momentum: Vec3::from([0, 1, 2].map(|axis: usize| along[axis][patch])),
+        species: species.patches.iter().map(|of| of[patch]).collect(),
+    }));
 }
 
 /// Sums of a boundary term and of its magnitude over all boundary faces.

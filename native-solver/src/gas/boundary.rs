@@ -11,6 +11,7 @@ use calcine_coupler::setup::{
 };
 
 use super::error::NativeError;
+use crate::numerics::parallel::sum;
 
 /// Slope of a wall's velocity against the wall that counts as round-off.
 const TANGENTIAL: f64 = 1e-9;
@@ -22,6 +23,10 @@ const ROUND: f64 = 0.1;
 struct Boundary {
     /// Its name.
     name: String,
+    /// Its place among the patches of the mesh.
+    place: usize,
+    /// How many faces it has.
+    count: usize,
     /// Area in m².
     area: f64,
     condition: GasPatch,
@@ -39,6 +44,8 @@ struct Boundary {
 #[derive(Clone, Debug)]
 pub struct Boundaries {
     internal: usize,
+    /// How many patches the mesh has, periodic ones and those without faces too.
+    of_mesh: usize,
     patches: Vec<Boundary>,
     /// Index into `patches` of each boundary face.
     patch_of: Vec<u32>,
@@ -176,10 +183,12 @@ impl Boundaries {
         }
         let mut boundaries = Self {
             internal: mesh.internal_faces() + mesh.periodic_faces().len(),
+            of_mesh: mesh.patches().len(),
             patches: Vec::new(),
             patch_of: Vec::with_capacity(mesh.faces() - mesh.internal_faces()),
         };
-        for patch in mesh.patches().iter().filter(|patch| patch.count > 0) {
+        let patches = mesh.patches().iter().enumerate();
+        for (place_in_mesh, patch) in patches.filter(|(_, patch)| patch.count > 0) {
             let condition = condition_of(setup, &patch.name)?;
             let joined = mesh.periodic_pair(patch.start).is_some();
             if joined != matches!(condition, GasPatch::Periodic { .. }) {
@@ -198,6 +207,8 @@ impl Boundaries {
             boundaries.patch_of.extend(patch.faces().map(|_| index));
             boundaries.patches.push(Boundary {
                 name: patch.name.clone(),
+                place: place_in_mesh,
+                count: patch.count,
                 area: patch
                     .faces()
                     .map(|face| mesh.face_area()[face].norm())
@@ -254,6 +265,17 @@ impl Boundaries {
     #[inline]
     pub fn at(&self, face: usize) -> &FaceCondition {
         self.patches[self.patch_of[face - self.internal] as usize].at(face)
+    }
+
+    /// A value of each patch of the mesh by those of its faces; 0 of periodic ones and those without faces.
+    pub fn by_patch(&self, of_face: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+        let mut values = vec![0.0; self.of_mesh];
+        let mut first = self.internal;
+        for boundary in &self.patches {
+            values[boundary.place] = sum(boundary.count, |face| of_face(first + face));
+            first += boundary.count;
+        }
+        values
     }
 
     /// True where a patch is a side of a wedge.

@@ -69,6 +69,8 @@ pub struct EnthalpyFlows {
     pub heat: Vec<f64>,
     /// Flow of enthalpy into the domain in W, and the sum of its magnitudes over the faces.
     pub boundary: [f64; 2],
+    /// The flow through each patch of the mesh.
+    pub patches: Vec<f64>,
     /// Σ ε V (p₀ − p₀_old)/Δτ in W.
     pub compression: f64,
 }
@@ -475,6 +477,9 @@ impl Enthalpy {
             let inflow = self.inflow(frame, now, grid.internal + face);
             [inflow, inflow.abs()]
         });
+        taken.patches = frame
+            .boundary
+            .by_patch(|face| self.inflow(frame, now, face));
         let rise = (now.base_pressure - frame.old.base_pressure) / frame.storage_span;
         let pores = |cell: usize| frame.void_fraction[cell] * grid.volume[cell];
         taken.compression = if rise == 0.0 {

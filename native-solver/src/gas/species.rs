@@ -58,6 +58,8 @@ pub struct SpeciesEquations {
     /// Flow of each species into the domain in kg/s and the sum of its magnitudes over the faces, as the
     /// last solve took them.
     pub boundary: Vec<[f64; 2]>,
+    /// The same flow through each patch of the mesh, of each species.
+    pub patches: Vec<Vec<f64>>,
 }
 
 impl SpeciesEquations {
@@ -79,6 +81,7 @@ impl SpeciesEquations {
             temperature_gradients: Vec::new(),
             temperature_bounds: Vec::new(),
             boundary: Vec::new(),
+            patches: Vec::new(),
         }
     }
 

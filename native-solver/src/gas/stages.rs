@@ -121,6 +121,9 @@ pub fn extrapolate(start: &GasState, first: &GasState, beyond: f64, between: &mu
 pub fn add(total: &mut CellReceived, part: &mut CellReceived, stage: &Stage, first: bool) {
     update(&mut part.heat, |_, heat| *heat *= stage.rate);
     update(&mut part.drag, |_, drag| *drag *= stage.rate);
+    part.patches
+        .iter_mut()
+        .for_each(|flow| flow.scale(stage.rate));
     part.storage_clock *= stage.amount;
     for balance in balances(part) {
         *balance = scaled(balance, stage.amount);
@@ -131,6 +134,8 @@ pub fn add(total: &mut CellReceived, part: &mut CellReceived, stage: &Stage, fir
     }
     update(&mut total.heat, |cell, heat| *heat += part.heat[cell]);
     update(&mut total.drag, |cell, drag| *drag += part.drag[cell]);
+    let flows = total.patches.iter_mut().zip(&part.patches);
+    flows.for_each(|(flow, part)| flow.add(part));
     total.storage_clock += part.storage_clock;
     for (balance, part) in balances(total).into_iter().zip(balances(part)) {
         *balance = sum(balance, part);

@@ -2,6 +2,7 @@
 
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::time::Ticks;
 
 /// Points at which fields are sampled.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +84,31 @@ pub enum Measure {
         /// Which one.
         number: usize,
     },
+    /// What flows through a patch into the gas, a mean over the last window.
+    Flow {
+        /// What: W or kg/s.
+        what: Passing,
+        /// The patch.
+        patch: String,
+    },
+    /// Force in N of the gas on a wall along a direction.
+    Force {
+        /// What of it.
+        part: ForcePart,
+        /// The patch.
+        patch: String,
+        /// Unit vector.
+        along: Vec3,
+    },
+    /// Particles that left through outlets.
+    Discharge {
+        /// What of them.
+        what: Discharged,
+        /// Index of the outlet; all of them where none is named.
+        outlet: Option<usize>,
+        /// Process time up to now that counts; all of the run where it is not stated.
+        over: Option<Ticks>,
+    },
     /// Angle in rad of the bed's surface in a drum: by which the centre of mass of all particles has turned
     /// about an axis from straight below it. A surface that is flat stands across the line from the axis to the
     /// centre of mass, so that this is its slope.
@@ -94,6 +120,41 @@ pub enum Measure {
         /// Unit vector along gravity.
         down: Vec3,
     },
+}
+
+/// What flows through a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passing {
+    /// Sensible enthalpy, zero at 298.15 K, with conduction.
+    Heat,
+    /// Gas.
+    Mass,
+    /// A species of it.
+    Species,
+}
+
+/// What of the force of the gas on a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForcePart {
+    /// The pressure above that of `gas.pressure`.
+    Pressure,
+    /// Friction.
+    Viscous,
+    /// Both.
+    Total,
+}
+
+/// What is told of particles that leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Discharged {
+    /// Mass flow in kg/s.
+    MassFlow,
+    /// Mass in kg.
+    Mass,
+    /// Number.
+    Count,
+    /// Mean process time in s, over the mass, since feeds brought them.
+    ResidenceTime,
 }
 
 /// Where a statistic of the gas is taken.

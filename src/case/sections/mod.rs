@@ -15,6 +15,7 @@ mod gas_patch;
 mod heat;
 mod hold;
 mod inventory;
+mod known;
 mod laws;
 mod mesh;
 mod motion;
@@ -22,6 +23,7 @@ mod output;
 mod packing;
 mod parcels;
 mod particles;
+mod passages;
 mod place;
 mod probes;
 mod quantities;
@@ -126,7 +128,8 @@ pub(super) fn case(
     if let Some(laws) = &laws {
         reactions::fits(root, &chemistry, laws, openfoam.solver);
     }
-    let output = output::output(root);
+    let end = time.as_ref().map(|(time, _)| time.end);
+    let output = output::output(root, end);
     if let (Some(gas), Some(output)) = (&gas, &output) {
         turbulence::fits(root, &gas.setup.turbulence, gas.held, output);
     }
@@ -134,7 +137,7 @@ pub(super) fn case(
     let probes = probes::probes(root);
     let quantities = {
         let species = gas.as_ref().map(|gas| gas.setup.properties.species());
-        let known = quantities::Known {
+        let known = known::Known {
             mesh: mesh.as_ref(),
             populations: particles.as_deref(),
             materials: &materials,
@@ -143,7 +146,13 @@ pub(super) fn case(
             bodies: &bodies,
             species: species.unwrap_or_default(),
             solids: reactions::are_all(root, &chemistry.reactions).then_some(&chemistry.solids[..]),
+            compositions: &chemistry.compositions,
             gravity: gas.as_ref().map(|gas| gas.setup.gravity),
+            patches: gas.as_ref().map_or(&[], |gas| &gas.setup.patches),
+            held: gas.as_ref().is_some_and(|gas| gas.held),
+            solver: openfoam.solver,
+            outlets: &outlets,
+            feeds: !feeds.is_empty(),
         };
         quantities::quantities(root, &known)
     };

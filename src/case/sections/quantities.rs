@@ -1,21 +1,18 @@
 //! `[[quantities]]`.
 
-use calcine_coupler::bodies::HeatBody;
-use calcine_coupler::motion::Wall;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::Schedule;
+use calcine_coupler::physics::solids::SolidSpecies;
 
 use super::bodies::of_name;
 use super::common::direction;
 use super::common::name_in_results;
-use super::common::patches;
+use super::known::{Known, check_patch, checked_probe};
+use super::passages;
 use super::zone::zone as zone_from;
 use crate::case::model::{
-    Expect, GasPlace, MaterialSpec, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population,
-    Probe, Quantity, SURROUNDINGS, Statistic, belongs,
+    Expect, GasPlace, Measure, ParticlePlace, PlacementSpec, Population, Quantity, SURROUNDINGS,
+    Statistic, belongs,
 };
-use calcine_coupler::physics::solids::SolidSpecies;
-
 use crate::case::table::TableReader;
 use crate::case::tolerance::{band, band_about};
 use crate::case::units::Dimension;
@@ -76,7 +73,11 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "kinetic_energy" => (Dimension::ENERGY, "J"),
         "wall_heat" => (Dimension::POWER, "W"),
         "mass" => (Dimension::MASS, "kg"),
-        "mass_fraction" | "count" => (Dimension::NONE, "1"),
+        "mass_fraction" | "count" | "conversion" => (Dimension::NONE, "1"),
+        "heat_flow" => (Dimension::POWER, "W"),
+        "mass_flow" | "species_flow" => (Dimension::MASS_FLOW, "kg/s"),
+        "force" => (Dimension::FORCE, "N"),
+        "residence_time" => (Dimension::TIME, "s"),
         "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
@@ -109,22 +110,6 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
     })
 }
 
-/// What a measure may name.
-pub(super) struct Known<'a> {
-    pub mesh: Option<&'a MeshSpec>,
-    pub populations: Option<&'a [Population]>,
-    pub materials: &'a [MaterialSpec],
-    pub probes: &'a [Probe],
-    /// Walls, with the temperatures of those that have one.
-    pub walls: &'a [(Wall, Option<Schedule>)],
-    pub bodies: &'a [HeatBody],
-    pub species: &'a [String],
-    /// None where a reaction could not be read: what it would make is not known.
-    pub solids: Option<&'a [SolidSpecies]>,
-    /// In m/s²; none where the gas could not be read.
-    pub gravity: Option<Vec3>,
-}
-
 /// The species or solid whose mass fraction is measured.
 fn column(
     reader: &TableReader<'_>,
@@ -133,9 +118,9 @@ fn column(
     of: Option<&str>,
     known: &Known<'_>,
 ) -> Option<usize> {
-    if field != "mass_fraction" {
+    if !["mass_fraction", "conversion", "species_flow"].contains(&field) {
         if of.is_some() {
-            let help = "remove it: only a mass_fraction is of a species";
+            let help = "remove it: mass_fraction, conversion and the flow of species are of one";
             reader.fail("of", "does not go with this measure", help);
         }
         return None;
@@ -145,7 +130,9 @@ fn column(
         return None;
     };
     let names: Vec<&str> = match measure {
-        Measure::Gas { .. } => known.species.iter().map(String::as_str).collect(),
+        Measure::Gas { .. } | Measure::Flow { .. } => {
+            known.species.iter().map(String::as_str).collect()
+        }
         _ => known.solids?.iter().map(SolidSpecies::name).collect(),
     };
     let found = names.iter().position(|other| *other == name);
@@ -156,7 +143,54 @@ fn column(
         };
         reader.fail("of", format!("is \"{name}\""), help);
     }
+    if let Some(solid) = found.filter(|_| field == "conversion") {
+        came_with(reader, measure, (solid, &names), known);
+    }
     found
+}
+
+/// Refuses the conversion of a solid with which none of the particles that are meant came.
+fn came_with(
+    reader: &TableReader<'_>,
+    measure: &Measure,
+    (solid, names): (usize, &[&str]),
+    known: &Known<'_>,
+) {
+    let Some(all) = known.populations else {
+        return;
+    };
+    let only = match measure {
+        Measure::Particles {
+            over: ParticlePlace::Among { populations, .. },
+            ..
+        } => populations.as_deref(),
+        _ => None,
+    };
+    let meant = (0u32..).zip(all);
+    let meant = meant.filter(|(place, _)| only.is_none_or(|only| only.contains(place)));
+    let made: Vec<&[f64]> = meant
+        .filter_map(|(_, one)| Some(&**known.compositions.get(one.material)?))
+        .collect();
+    let has = |k: usize| {
+        made.iter()
+            .any(|shares| shares.get(k).is_some_and(|x| *x > 0.0))
+    };
+    if has(solid) {
+        return;
+    }
+    let others: Vec<&str> = (0..names.len())
+        .filter(|k| has(*k))
+        .map(|k| names[k])
+        .collect();
+    let help = match others[..] {
+        [] => "name particles that react; these have no composition".into(),
+        _ => format!("they come with {}", others.join(", ")),
+    };
+    let rule = format!(
+        "is \"{}\", with which none of these particles comes",
+        names[solid]
+    );
+    reader.fail("of", rule, help);
 }
 
 /// The measure and the field that it is of.
@@ -167,6 +201,9 @@ fn measure(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'st
         "particles" => particles(reader, known),
         "particle" => particle(reader, known),
         "wall_heat" => wall_heat(reader, known),
+        "flow" => passages::flow(reader, known),
+        "force" => passages::force(reader, known),
+        "discharge" => passages::discharge(reader, known),
         "body" => {
             let name = reader.text("body")?;
             of_name(reader, name, known.bodies);
@@ -397,28 +434,6 @@ fn statistic(reader: &TableReader<'_>, unstated: Option<Statistic>) -> Option<St
     }
     reader.need("statistic");
     reader.choice("statistic")
-}
-
-fn check_patch(reader: &TableReader<'_>, key: &str, name: &str, mesh: Option<&MeshSpec>) {
-    if let Some(known) = patches(mesh)
-        && !known.contains(&name)
-    {
-        let rule = format!("names \"{name}\", which is not a patch of the mesh");
-        reader.fail(key, rule, format!("the patches are {}", known.join(", ")));
-    }
-}
-
-fn checked_probe(reader: &TableReader<'_>, name: &str, known: &Known<'_>) -> Option<String> {
-    if known.probes.iter().any(|probe| probe.name == name) {
-        return Some(name.into());
-    }
-    let names: Vec<&str> = known.probes.iter().map(|p| p.name.as_str()).collect();
-    let help = match names[..] {
-        [] => "the case has no [[probes]]".into(),
-        _ => format!("the probes are {}", names.join(", ")),
-    };
-    reader.fail("probe", format!("is \"{name}\""), help);
-    None
 }
 
 /// Number of particles, where the case alone knows it.

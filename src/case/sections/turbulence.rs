@@ -92,12 +92,23 @@ pub(super) fn fits(root: &TableReader<'_>, turbulence: &Turbulence, held: bool, 
         let help = "remove [gas.turbulence], or `held`";
         section.fail("turbulence", "stands beside `held`", help);
     }
-    let asked = output.gas.iter().any(|name| name == "turbulence");
-    if asked
-        && turbulence.is_laminar()
-        && let Some(output) = root.table("output")
-    {
+    let asks = |fields: &[String]| {
+        turbulence.is_laminar() && fields.iter().any(|name| name == "turbulence")
+    };
+    let Some(section) = root.table("output") else {
+        return;
+    };
+    let refuse = |table: &TableReader<'_>| {
         let help = "write `model = \"k-epsilon\"` in [gas.turbulence], or leave it out";
-        output.fail("gas", "names \"turbulence\" of a laminar gas", help);
+        table.fail("gas", "names \"turbulence\" of a laminar gas", help);
+    };
+    if asks(&output.gas) {
+        refuse(&section);
+    }
+    if let Some(means) = &output.means
+        && asks(&means.gas)
+        && let Some(table) = section.table("means")
+    {
+        refuse(&table);
     }
 }

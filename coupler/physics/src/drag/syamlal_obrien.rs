@@ -28,6 +28,9 @@ const DILUTE: f64 = 0.85;
 /// Validity: settling and fluidised suspensions. In packed beds it is low: at ε = 0.45 and Re of a few it has 0.6 times the drag by Ergun.
 /// A lone sphere in creeping flow has 0.96 of Stokes' drag, by Dalla Valle.
 ///
+/// Point, by β as printed: air of ρ = 1.2 kg/m³ and μ = 1.82e-5 Pa s, ε = 0.6, |u − v| = 0.5 m/s, d = 2 mm has Re = 65.934,
+/// v_r = 0.389551, β = 355.102 kg/m³/s and K_A = 355.102 π d³/6/0.4 = 3.71862e-6 kg/s.
+///
 /// Sources: Syamlal and O'Brien, Int. J. Multiphase Flow 14 (1988) 473, doi 10.1016/0301-9322(88)90023-7; Syamlal, Rogers and O'Brien, MFIX
 /// documentation: theory guide, DOE/METC-94/1004 (1993); v_r: Garside and Al-Dibouni, Ind. Eng. Chem. Process Des. Dev. 16 (1977) 206,
 /// doi 10.1021/i260062a008.

@@ -26,6 +26,9 @@ use crate::local::LocalGas;
 /// In dense arrays it is far below Ergun's law where inertia counts: at φ = 0.55 it has 0.34 of Ergun's drag at Re = 929 (Beetstra's 0.69,
 /// Tenneti's 0.45).
 ///
+/// Point, by F as printed: air of ρ = 1.2 kg/m³ and μ = 1.82e-5 Pa s, ε = 0.7, |u − v| = 0.5 m/s, d = 1 mm has Re = 23.0769,
+/// F = 10.6061 and K_A = 3π μ d 0.7 · 10.6061 = 1.27349e-6 kg/s.
+///
 /// Source: Tang, Peters, Kuipers, Kriebitzsch and van der Hoef, AIChE J. 61 (2015) 688, doi 10.1002/aic.14645.
 #[derive(Clone, Copy, Debug)]
 pub struct Tang;

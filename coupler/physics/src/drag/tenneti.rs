@@ -23,6 +23,9 @@ use crate::local::LocalGas;
 ///
 /// Validity: φ 0.1 to 0.5, Re 0.01 to 300. For φ → 0 it tends to Schiller and Naumann's isolated sphere.
 ///
+/// Point, by F as printed: air of ρ = 1.2 kg/m³ and μ = 1.82e-5 Pa s, ε = 0.7, |u − v| = 0.5 m/s, d = 1 mm has Re = 23.0769,
+/// F = 13.7266 and K_A = 3π μ d 0.7² · 13.7266 = 1.15372e-6 kg/s.
+///
 /// Source: Tenneti, Garg and Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072,
 /// doi 10.1016/j.ijmultiphaseflow.2011.05.010.
 #[derive(Clone, Copy, Debug)]

@@ -20,6 +20,9 @@ const BRANCHES: [f64; 2] = [200.0, 1500.0];
 ///
 /// CFDEMcoupling's `LaEuScalarTemp` is the same but for Pr^0.33.
 ///
+/// Point: ε = 0.6, Re = 800, Pr = 0.7, n = 3.5 has 0.5 √800 = 14.1421, 0.02 · 800^0.8 = 4.2025 and Nu = 2 + 0.6^3.5 · 18.3446 · 0.7^⅓ =
+/// 4.72523.
+///
 /// Source: Li and Mason, Powder Technol. 112 (2000) 273, doi 10.1016/S0032-5910(00)00302-8.
 #[derive(Clone, Copy, Debug)]
 pub struct LiMason {

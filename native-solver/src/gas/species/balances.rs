@@ -34,6 +34,11 @@ impl SpeciesEquations {
                 [inflow, inflow.abs()]
             });
         }
+        let own = |k| {
+            let boundary = frame.boundary;
+            boundary.by_patch(|face| self.inflow(frame, now, k, face))
+        };
+        self.patches = (0..frame.species()).map(own).collect();
     }
 
     /// Gives each cell what flows, particles and reactions brought it beyond m Y, so that the content of a cell is what came and

@@ -1,0 +1,144 @@
+//! What passes patches of the gas and outlets of particles, as measures tell it.
+
+use calcine_coupler::observer::CommittedState;
+use calcine_coupler::outflows::OutletTotals;
+use calcine_coupler::part::PatchFlow;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::time::Ticks;
+use serde::{Deserialize, Serialize};
+
+use crate::case::model::{Case, Discharged, ForcePart, Measure, Passing};
+
+/// What had left through each outlet at past times, as far back as a measure looks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct OutflowTrail {
+    /// Process time in ps, and the totals of each outlet from then on to the next entry. The first is the start of the run.
+    marks: Vec<(i64, Vec<[f64; 4]>)>,
+}
+
+impl OutflowTrail {
+    /// Notes what has left by now; measures look back by so many ps at most.
+    pub fn note(&mut self, moment: &CommittedState<'_>, reach: i64) {
+        let now = moment.clocks.process.count();
+        let totals: Vec<_> = moment.outlets.iter().map(OutletTotals::numbers).collect();
+        if self.marks.last().is_none_or(|last| last.1 != totals) {
+            self.marks.push((now, totals));
+        }
+        // The start stays, and of what is too far back the last.
+        let far = self.marks.partition_point(|mark| mark.0 <= now - reach);
+        self.marks.drain(1..far.saturating_sub(1).max(1));
+    }
+
+    /// What left through an outlet, or all, over a time up to now or since the start; and the span in s.
+    fn since(
+        &self,
+        moment: &CommittedState<'_>,
+        outlet: Option<usize>,
+        over: Option<Ticks>,
+    ) -> (OutletTotals, f64) {
+        let now = moment.clocks.process.count();
+        let begin = self.marks.first().map_or(0, |mark| mark.0);
+        let from = over.map_or(begin, |over| (now - over.count()).max(begin));
+        let next = self.marks.partition_point(|mark| mark.0 <= from);
+        let before = next
+            .checked_sub(1)
+            .and_then(|place| self.marks.get(place))
+            .map_or(&[][..], |mark| &mark.1);
+        let mut sum = [0.0; 4];
+        for (place, totals) in moment.outlets.iter().enumerate() {
+            if outlet.is_some_and(|only| only != place) {
+                continue;
+            }
+            let before = before.get(place).copied().unwrap_or_default();
+            for ((sum, total), before) in sum.iter_mut().zip(totals.numbers()).zip(before) {
+                *sum += total - before;
+            }
+        }
+        (
+            OutletTotals::from_numbers(sum),
+            Ticks::new(now - from).seconds(),
+        )
+    }
+}
+
+/// By how many ps of process time measures of a case look back.
+pub(super) fn reach(case: &Case) -> i64 {
+    let over = case.quantities.iter().map(|one| match one.measure {
+        Measure::Discharge { over, .. } => over.map_or(0, Ticks::count),
+        _ => 0,
+    });
+    over.max().unwrap_or(0)
+}
+
+/// What left through outlets; NaN for the mean of none.
+pub(super) fn discharge(
+    moment: &CommittedState<'_>,
+    trail: &OutflowTrail,
+    what: Discharged,
+    outlet: Option<usize>,
+    over: Option<Ticks>,
+) -> f64 {
+    let (left, span) = trail.since(moment, outlet, over);
+    match what {
+        Discharged::MassFlow => left.mass / span,
+        Discharged::Mass => left.mass,
+        Discharged::Count => left.particles,
+        Discharged::ResidenceTime => left.age / left.fed_mass,
+    }
+}
+
+/// What passed a patch in the last window; none before the first, and of a gas that does not tell.
+fn passed<'a>(moment: &CommittedState<'a>, patch: &str) -> Option<&'a PatchFlow> {
+    let mut patches = moment.mesh.patches().iter();
+    let place = patches.position(|one| one.name == patch)?;
+    moment.patch_flows.get(place)
+}
+
+/// What flows through a patch into the gas: of species the one of a column.
+pub(super) fn flow(
+    moment: &CommittedState<'_>,
+    what: Passing,
+    patch: &str,
+    column: Option<usize>,
+) -> f64 {
+    let of = |flow: &PatchFlow| match what {
+        Passing::Heat => Some(flow.heat),
+        Passing::Mass => Some(flow.mass),
+        Passing::Species => flow.species.get(column?).copied(),
+    };
+    passed(moment, patch).and_then(of).unwrap_or(f64::NAN)
+}
+
+/// Force in N of the gas on a wall along a direction; NaN before the first window.
+pub(super) fn force(
+    moment: &CommittedState<'_>,
+    part: ForcePart,
+    patch: &str,
+    along: &Vec3,
+    reference: f64,
+) -> f64 {
+    if moment.windows == 0 {
+        return f64::NAN;
+    }
+    let viscous = || passed(moment, patch).map_or(f64::NAN, |flow| -flow.momentum.dot(along));
+    match part {
+        ForcePart::Pressure => pressure_force(moment, patch, along, reference),
+        ForcePart::Viscous => viscous(),
+        ForcePart::Total => pressure_force(moment, patch, along, reference) + viscous(),
+    }
+}
+
+/// Σ (p_f − p₀) S_f along a direction, with S_f out of the gas and the pressure at face centres, p_f = p_c + ∇p·(x_f − x_c).
+fn pressure_force(moment: &CommittedState<'_>, patch: &str, along: &Vec3, reference: f64) -> f64 {
+    let mesh = moment.mesh;
+    let Some(patch) = mesh.patch(patch) else {
+        return f64::NAN;
+    };
+    let on_face = |face: usize| {
+        let cell = mesh.owner()[face] as usize;
+        let arm = mesh.face_centre()[face] - mesh.cell_centre()[cell];
+        let pressure = moment.gas.pressure[cell] + moment.gas.pressure_gradient[cell].dot(&arm);
+        (pressure - reference) * mesh.face_area()[face].dot(along)
+    };
+    patch.faces().map(on_face).sum()
+}
