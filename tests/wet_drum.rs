@@ -67,6 +67,7 @@ fn hot_chips_with_traces_of_water_agree_with_their_gas_in_every_window() {
     let folder = tempfile::tempdir().unwrap();
     let traces = [
         "time.end=0.1 s",
+        "reactions.drying.law=wood-drying",
         "particles.chips.temperature=560 K",
         "materials.chips.composition={ mass = { wood = 0.99, \"H2O(l)\" = 0.01 } }",
     ];
