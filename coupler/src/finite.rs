@@ -1,4 +1,4 @@
-//! Numbers that are not finite: where they stand, and what they are of.
+//! Numbers that are not finite, or that no gas can have: where they stand, and what they are of.
 
 use std::fmt;
 
@@ -11,10 +11,13 @@ use crate::time::{Ticks, Window};
 
 /// Values that one thread takes at a time.
 const CHUNK: usize = 16_384;
+/// What a mass fraction may lie outside 0 to 1 by. Solvers leave traces at their tolerance; beyond this, density and
+/// enthalpy are those of no gas, and the next window would begin with them.
+const OUTSIDE: f64 = 0.1;
 /// Exponent of a number that is infinite or NaN.
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 
-/// A number of a window that is not finite.
+/// A number of a window that is not finite, or a mass fraction that no gas can have.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error(
     "window {window} (from {start}): {quantity} {place} is {value}; shorter windows may help (`time.motion_window`, or \
@@ -33,7 +36,7 @@ pub struct NotFinite {
     pub value: f64,
 }
 
-/// Where a number stands that is not finite.
+/// Where such a number stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotFinitePlace {
     /// In a cell of the gas' mesh.
@@ -189,7 +192,7 @@ fn told(cells: &CellExchange) -> Option<(&'static str, usize, f64)> {
     of_cells.or_else(drag).or_else(of_species)
 }
 
-/// The first number of a gas that is not finite.
+/// The first number of a gas that is not finite, or mass fraction that no gas can have.
 pub(crate) fn broken_gas(
     gas: &GasFields<'_>,
     species: &[String],
@@ -216,7 +219,12 @@ pub(crate) fn broken_gas(
     if let Some((name, place, value)) = scalars.or_else(vectors) {
         return Some((name.to_owned(), cell(place), value));
     }
-    let (place, value) = first_in(gas.composition)?;
+    let outside = || {
+        let beyond = |one: &f64| *one < -OUTSIDE || *one > 1.0 + OUTSIDE;
+        let place = gas.composition.par_iter().position_first(beyond)?;
+        Some((place, gas.composition[place]))
+    };
+    let (place, value) = first_in(gas.composition).or_else(outside)?;
     let each = species.len().max(1);
     let name = species.get(place % each).map_or("", |name| name);
     Some((
@@ -241,6 +249,33 @@ mod tests {
         vectors[3].z = f64::NAN;
         let (name, place, value) = first_of(&[("a", &[][..]), ("b", &vectors)]).unwrap();
         assert!(name == "b" && place == 3 && value.is_nan());
+    }
+
+    #[test]
+    fn a_mass_fraction_that_no_gas_can_have_is_found_and_traces_are_left() {
+        let species = ["H2O", "N2"].map(String::from);
+        let centre = [Vec3::zeros(), Vec3::new(1.0, 0.0, 0.0)];
+        let found = |fraction: f64| {
+            let gas = GasFields {
+                temperature: &[300.0; 2],
+                pressure: &[1e5; 2],
+                density: &[1.0; 2],
+                composition: &[0.5, 0.5, fraction, 1.0 - fraction],
+                velocity: &[],
+                pressure_gradient: &[],
+                turbulence: Default::default(),
+            };
+            broken_gas(&gas, &species, &centre)
+        };
+        for trace in [0.2, -1e-7, -0.05, 1.05] {
+            assert_eq!(found(trace), None);
+        }
+        for wrong in [-0.228, 1.2, f64::NAN] {
+            let (name, place, value) = found(wrong).unwrap();
+            assert_eq!(name, "the mass fraction of H2O");
+            assert!(matches!(place, NotFinitePlace::Cell { cell: 1, .. }));
+            assert!(value == wrong || wrong.is_nan());
+        }
     }
 
     #[test]

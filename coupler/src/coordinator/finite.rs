@@ -1,4 +1,4 @@
-//! What a window leaves in gas, particles and ledger must be finite.
+//! What a window leaves in gas, particles and ledger must be finite, and mass fractions those of a gas.
 
 use super::CoupledRun;
 use crate::finite::{Broken, NotFinite, NotFinitePlace, broken_gas, first_of, refusal};
@@ -6,7 +6,7 @@ use crate::part::Gas as _;
 use crate::time::Window;
 
 impl CoupledRun {
-    /// Refuses a window that left a number that is not finite in the gas, the particles or the ledger.
+    /// Refuses a window that left a number that is not finite in the gas, the particles or the ledger, or a gas that cannot be.
     pub(super) fn check_finite(&self, window: &Window) -> Result<(), NotFinite> {
         let found = self
             .broken_gas()
