@@ -185,7 +185,8 @@ fn profiles(snapshots: &[Snapshot], axis: usize) -> Vec<String> {
     };
     let mut plots = Vec::new();
     type Means<'a> = &'a dyn Fn(&Snapshot, &[f64]) -> (Vec<f64>, Vec<f64>);
-    let parts: [(&str, fn(&Snapshot) -> &[BedColumn], Means<'_>); 2] = [
+    type Columns = fn(&Snapshot) -> &[BedColumn];
+    let parts: [(&str, Columns, Means<'_>); 2] = [
         ("Gas: ", |one| &one.gas, &of_gas),
         ("Particles: ", |one| &one.particles, &of_particles),
     ];

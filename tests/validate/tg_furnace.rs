@@ -8,7 +8,7 @@ use std::process::Command;
 use calcine::case::parse_tuning;
 use calcine::results::Summary;
 use calcine_coupler::ledger::STORAGE_CLOCK;
-use calcine_tuning::{ComparedQuantity, SampleProblem};
+use calcine_tuning::{ComparedQuantity, SampleProblem, TuningProblem};
 use serde_json::Value;
 
 use crate::shipped;

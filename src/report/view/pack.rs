@@ -395,12 +395,12 @@ mod tests {
         for (frame, moment) in data.frames.iter().zip(&cast.moments) {
             assert_eq!((frame.count, frame.positions % 2), (500, 0));
             for row in 0..500 {
-                for axis in 0..3 {
+                for (axis, (low, high)) in EXTENT[0].iter().zip(&EXTENT[1]).enumerate() {
                     let at = frame.positions + 6 * row + 2 * axis;
                     let share =
                         f64::from(u16::from_le_bytes([bytes[at], bytes[at + 1]])) / 65_535.0;
-                    let span = EXTENT[1][axis] - EXTENT[0][axis];
-                    let error = EXTENT[0][axis] + share * span - moment.centres[row][axis];
+                    let span = high - low;
+                    let error = low + share * span - moment.centres[row][axis];
                     assert!(error.abs() <= 0.5001 * span / 65_535.0, "{error}");
                 }
                 let share = f64::from(bytes[frame.radii + row]) / 255.0;
