@@ -15,7 +15,7 @@ use thiserror::Error;
 
 const MAGIC: &[u8; 8] = b"CALCSTAT";
 /// Raised with every change of what participants keep, too: a state that lacks something is refused as a whole.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 const CHECKSUM: usize = 32;
 const REALS: u32 = 0;
 const COUNTS: u32 = 1;
@@ -369,7 +369,7 @@ mod tests {
         bytes.extend(checksum);
         fs::write(&path, bytes).unwrap();
         let text = StateFile::read(&path).unwrap_err().to_string();
-        let told = "gas.state is of version 1, which another release of Calcine wrote; this one reads version 3; resume \
+        let told = "gas.state is of version 1, which another release of Calcine wrote; this one reads version 4; resume \
                     with the release that wrote it, or start again";
         assert!(text.ends_with(told), "{text}");
     }
