@@ -61,22 +61,6 @@ fn a_turning_drum_of_wet_parcels_dries_chars_and_closes_its_ledger_with_both_gas
     }
 }
 
-/// Chips in equilibrium with the vapour about them exchange little in all, and much between the cells that a parcel spans.
-#[test]
-fn hot_chips_with_traces_of_water_agree_with_their_gas_in_every_window() {
-    let folder = tempfile::tempdir().unwrap();
-    let traces = [
-        "time.end=0.1 s",
-        "reactions.drying.law=wood-drying",
-        "particles.chips.temperature=560 K",
-        "materials.chips.composition={ mass = { wood = 0.99, \"H2O(l)\" = 0.01 } }",
-    ];
-    let out = folder.path().join("out");
-    program::run(&program::shipped("wet-drum"), &out, &[], &traces);
-    let convergence = closes(&out).convergence;
-    println!("{} attempts in 50 windows", convergence.attempts);
-}
-
 #[test]
 fn a_turning_drum_of_wet_parcels_that_is_killed_resumes_to_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();

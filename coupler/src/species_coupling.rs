@@ -4,7 +4,7 @@
 //! r = b Ȳ − a. Its share in a cell follows the gas of the cell, W_cp [r + β (Y_c − Ȳ)], with β how the rate at a part of
 //! the surface follows the gas there. b is the response of the particle as a whole, with its temperature and what
 //! it is made of; β alone says where mass is exchanged, and no choice of b moves the result. An attempt of
-//! a window gives the gas β Y_c − (a + (β − b) Ȳ) about the gas about which particles are linearised, with the larger of b and β/2
+//! a window gives the gas β Y_c − (a + (β − b) Ȳ) about the gas of the attempt before, with the larger of b and β/2
 //! implicitly: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
 //! channel turns it mole for mole likewise (the rate follows both, and by the key gas alone the two would be out of step
 //! until the attempts agree), all others explicitly, but for what would be taken of a gas whatever is left of it: that goes in
@@ -45,8 +45,6 @@ pub struct SpeciesCoupling {
     pub least: f64,
     /// Rates before those.
     before: Vec<f64>,
-    /// What moved most in the last comparison ([`SpeciesCoupling::most_moved`]).
-    most_moved: Option<(usize, [f64; 2])>,
     /// Of each channel the gas that counter-diffuses mole for mole.
     counter: Vec<Option<usize>>,
     shares: Vec<f64>,
@@ -94,13 +92,13 @@ struct CellLine {
 }
 
 impl SpeciesCoupling {
-    /// Tells the gas the lines, about the mass fractions `about` of its cells. The result is how far their rates at its present
-    /// fields are from those before, as a share of all.
+    /// Tells the gas the lines, about its present fields. The result is how far their rates there are from those before, as a
+    /// share of all.
     pub fn linearise(
         &mut self,
         operator: &Operator,
         given: ChannelLines<'_>,
-        (gas, about): (&GasFields<'_>, &[f64]),
+        gas: &GasFields<'_>,
         properties: &GasModel,
         out: &mut SpeciesExchange,
     ) -> f64 {
@@ -109,12 +107,6 @@ impl SpeciesCoupling {
         self.shares.clear();
         self.shares.resize(count, 1.0);
         let moved = self.follow(operator, given, gas, species);
-        self.most_moved = self.find_most_moved();
-        if about != gas.composition {
-            self.fractions.clear();
-            self.fractions.extend_from_slice(about);
-            self.sample_rates(operator, given, species);
-        }
         self.spread(operator, given, properties);
         let counter = |channel| counter(channel, properties);
         self.counter.clear();
@@ -154,10 +146,6 @@ impl SpeciesCoupling {
     /// The rate that moved most in the last comparison, by its place in [`SpeciesCoupling::rates`], before and now in units/s;
     /// `None` where none did. One that is not finite has moved more than all.
     pub fn most_moved(&self) -> Option<(usize, [f64; 2])> {
-        self.most_moved
-    }
-
-    fn find_most_moved(&self) -> Option<(usize, [f64; 2])> {
         let pairs = self.before.iter().zip(&self.rates).enumerate();
         let moved = pairs.map(|(at, (before, now))| (at, [*before, *now]));
         let by = |one: &(usize, [f64; 2])| {

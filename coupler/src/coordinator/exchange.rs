@@ -131,11 +131,6 @@ impl ExchangeStage {
                 break (false, misplaced, larger(off, moved));
             }
             damped = true;
-            // The gas of the fixed rates is one more that came of the iterate.
-            self.iterate.keep(&with.gas.fields());
-            self.advance_iterate(with);
-            self.respond(with, window)?;
-            self.tell_rates(with);
         };
         if !settled {
             tracing::debug!(
@@ -326,13 +321,9 @@ impl ExchangeStage {
             let told = &mut self.exchange.cells.species;
             let (operator, properties) = (&with.mapped.operator, &with.laws.closures.gas);
             let gas = with.gas.fields();
-            moved = self.species.linearise(
-                operator,
-                with.lines(),
-                (&gas, self.iterate.composition()),
-                properties,
-                told,
-            );
+            moved = self
+                .species
+                .linearise(operator, with.lines(), &gas, properties, told);
             with.meter.stop(running);
         }
         moved

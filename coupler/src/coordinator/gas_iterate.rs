@@ -107,11 +107,6 @@ impl GasIterate {
         larger(apart, mean(other))
     }
 
-    /// Mass fractions of the species, cell by cell.
-    pub fn composition(&self) -> &[f64] {
-        &self.composition
-    }
-
     /// Keeps the gas of an attempt.
     pub fn keep(&mut self, gas: &GasFields<'_>) {
         let own = level(gas.pressure);
