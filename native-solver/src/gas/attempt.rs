@@ -47,6 +47,8 @@ pub struct AttemptFrame<'a> {
     pub motion_span: f64,
     /// Storage span Δτ in s.
     pub storage_span: f64,
+    /// True of one of several stages of a window.
+    pub is_stage: bool,
 }
 
 impl AttemptFrame<'_> {

@@ -362,14 +362,16 @@ impl Enthalpy {
         }
     }
 
-    /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K).
-    pub fn residual(&self, now: &GasState) -> f64 {
-        let [error, content] = sums(now.enthalpy.len(), |cell| {
+    /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K), and the mass in kg/s by which gas
+    /// of these cells would expand for it, relative to `most` in kg/s.
+    pub fn residual(&self, now: &GasState, most: f64) -> f64 {
+        let [error, content, expands] = sums(now.enthalpy.len(), |cell| {
             let error = self.source[cell] - self.matrix.row_times(cell, &now.enthalpy);
-            let capacity = self.matrix.diagonal()[cell] * self.heat_capacity[cell];
-            [error.abs(), capacity * now.temperature[cell]]
+            let heat = self.heat_capacity[cell] * now.temperature[cell];
+            let capacity = self.matrix.diagonal()[cell] * heat;
+            [error.abs(), capacity, error.abs() / heat]
         });
-        error / content
+        (error / content).max(expands / most)
     }
 
     /// Solves for the enthalpy; returns the iterations.

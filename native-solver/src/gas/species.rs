@@ -173,12 +173,12 @@ impl SpeciesEquations {
     }
 
     /// Largest change of a mass fraction that the equations at hand still ask for: their residual
-    /// relative to what the cells hold and what flows through them.
+    /// relative to what the cells hold and what flows through them, in kg/s, and to `most`, if that is less.
     pub fn residual(
         &mut self,
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
-        share: f64,
+        (share, most): (f64, f64),
         now: &GasState,
     ) -> f64 {
         if frame.species() == 0 {
@@ -198,7 +198,7 @@ impl SpeciesEquations {
                 let error = self.source[cell] - self.matrix.row_times(cell, &self.fractions[k]);
                 [error.abs(), self.matrix.diagonal()[cell]]
             });
-            worst = worst.max(error / content);
+            worst = worst.max(error / content.min(most));
         }
         worst
     }

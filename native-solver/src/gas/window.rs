@@ -123,6 +123,7 @@ impl NativeGas {
             },
             motion_span: stage.span * window.span.motion.seconds(),
             storage_span: stage.span * self.setup.storage.span(window),
+            is_stage: stage.span < 1.0,
         };
         let convergence =
             self.equations
