@@ -57,7 +57,6 @@ fn the_pressure_does_not_depend_on_what_solvers_leave_in_short_windows() {
                     let found = drop(window, tolerance, scheme, heat.clone());
                     // In units of the dynamic pressure, ρ u² = 1.18 Pa.
                     let off = (found - close) / 1.18;
-                    println!("{scheme:?}, {name}, {window} s, {tolerance}: {found} Pa, {off:.2e}");
                     assert!(
                         off.abs() < 1e-3,
                         "{scheme:?}, {name}, {window} s, {tolerance}: {found} Pa, not {close} Pa"

@@ -91,8 +91,8 @@ impl CoupledRun {
         let quality = self.mesh.quality()?;
         (quality.angle.value > LEANS).then(|| {
             format!(
-                "the mesh leans most, by {:.1} degrees, {}; its largest skewness is {:.2}, {}; shorter windows and more \
-                 `gas.controls.pressure_corrections` help on such cells",
+                "the mesh leans most, by {:.1} degrees, {}; its largest skewness is {:.2}, {}; on such cells \
+                 shorter windows help, or more `gas.controls.outer_iterations` or `pressure_corrections`",
                 quality.angle.value,
                 place(&quality.angle),
                 quality.skewness.value,
