@@ -18,7 +18,7 @@ use super::quantities::{self, Captured, RunSoFar};
 use super::rebuild::{self, rebuild};
 use super::resume::{self, Counters, Restored};
 use super::series::{self, Row, TRACKED_PARTICLES, Table};
-use super::status::Watch;
+use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{ProcessorTimes, Provenance, RunFailure, Summary, Verdict, WallTimes};
 use super::vtk::{self, Cells};
@@ -145,7 +145,7 @@ impl Recorder {
         summary.warnings.clone_from(&self.counters.warnings);
         summary.failure = failure;
         summary.verdict = Verdict::Stopped;
-        let status = summarise::status_of(summary);
+        let status = Status::of(summary);
         let summary = summary.replace(&self.directory);
         self.watch.close(status)?;
         summary

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
+use super::summary::Summary;
 use super::{ResultsError, STATUS, files};
 
 /// The shortest time between two replacements.
@@ -48,6 +49,29 @@ pub(super) struct Watch {
     last: Option<Instant>,
     begun: Instant,
     begun_at: f64,
+}
+
+impl Status {
+    /// The status that a summary tells.
+    pub fn of(summary: &Summary) -> Self {
+        let begun = |step: &&(f64, f64)| step.0 <= summary.process_time_s;
+        let factor = summary.acceleration.iter().rfind(begun);
+        Self {
+            state: summary.verdict.state().into(),
+            process_time_s: summary.process_time_s,
+            process_end_s: summary.process_end_s,
+            motion_time_s: summary.motion_time_s,
+            acceleration: factor.map_or(1.0, |step| step.1),
+            windows: summary.windows,
+            motion_window_s: None,
+            step_error: None,
+            courant: None,
+            cuts: 0,
+            cut_to_s: None,
+            fraction_done: summary.process_time_s / summary.process_end_s,
+            wall_time_left_s: None,
+        }
+    }
 }
 
 impl Watch {

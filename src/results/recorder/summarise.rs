@@ -173,27 +173,6 @@ impl Recorder {
     }
 }
 
-/// The status that a summary tells.
-pub(super) fn status_of(summary: &Summary) -> Status {
-    let begun = |step: &&(f64, f64)| step.0 <= summary.process_time_s;
-    let factor = summary.acceleration.iter().rfind(begun);
-    Status {
-        state: summary.verdict.state().into(),
-        process_time_s: summary.process_time_s,
-        process_end_s: summary.process_end_s,
-        motion_time_s: summary.motion_time_s,
-        acceleration: factor.map_or(1.0, |step| step.1),
-        windows: summary.windows,
-        motion_window_s: None,
-        step_error: None,
-        courant: None,
-        cuts: 0,
-        cut_to_s: None,
-        fraction_done: summary.process_time_s / summary.process_end_s,
-        wall_time_left_s: None,
-    }
-}
-
 fn solver(about: &SolverInfo) -> SolverSummary {
     SolverSummary {
         name: about.name.clone(),
