@@ -51,7 +51,21 @@ pub struct AttemptFrame<'a> {
     pub is_stage: bool,
 }
 
+/// Of several stages the second begins (1 − γ)/γ times as far from the start as the first came, with what the first left of continuity and of
+/// the heat by which gas expands: they are solved closer by this share.
+const STAGES: f64 = 1e-2;
+/// Tolerance from which on that is close enough.
+const CLOSE: f64 = 1e-9;
+
 impl AttemptFrame<'_> {
+    /// By what share of the usual terms continuity is judged where they are those of short windows.
+    pub fn closer(&self) -> f64 {
+        match self.is_stage {
+            true => (CLOSE / self.tolerance).clamp(STAGES, 1.0),
+            false => 1.0,
+        }
+    }
+
     /// Number of species; zero for a single gas.
     pub fn species(&self) -> usize {
         self.properties.species().len()

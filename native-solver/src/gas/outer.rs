@@ -188,7 +188,7 @@ impl Equations {
         self.react(frame);
         // What the scalars leave makes the gas expand behind continuity. From window to window that lags evenly; from the first stage
         // to the second it does not, and drives pressures as a mismatch of continuity does.
-        let most = match frame.is_stage {
+        let most = match frame.closer() < 1.0 {
             true => self.continuity.terms,
             false => f64::INFINITY,
         };

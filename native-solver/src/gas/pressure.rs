@@ -49,9 +49,6 @@ const FOLLOWED: f64 = 0.75;
 const PRESSED: f64 = 100.0;
 /// Gas that nothing moves: this share of what cells hold counts among the terms of continuity at least.
 const STILL: f64 = 1e-5;
-/// Of several stages the second begins (1 − γ)/γ times as far from the start as the first came, with what the first left of continuity and of
-/// the heat by which gas expands: they are solved closer by this share.
-const STAGES: f64 = 1e-2;
 /// Iterations of a solve at most.
 const ITERATIONS: u32 = 2000;
 /// Up to this many cells the incomplete factorisation is used. There it was measured level with the multigrid, which takes half of its time
@@ -375,8 +372,7 @@ impl Pressure {
         // ρ u² V Δt/h², of all cells by their means.
         let spans = frame.motion_span / frame.storage_span;
         let moved = pressed * frame.motion_span + spans * through * through / held;
-        let closer = if frame.is_stage { STAGES } else { 1.0 };
-        let terms = (through + held).min(closer * (PRESSED * moved + STILL * held));
+        let terms = (through + held).min(frame.closer() * (PRESSED * moved + STILL * held));
         ContinuityResidual {
             share: (error + self.missed_at_openings(frame, now)) / terms,
             terms,
