@@ -61,3 +61,25 @@ fn of(case: &Case, mesh: &Mesh, body: &HeatBody) -> Vec<String> {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::valid::ValidCase;
+
+    /// 0.5 g of 150.05 J/kg/K at 960 K; 4 e sigma A T^3 = 4 · 0.15 · 5.6704e-8 · 3e-4 · 1160^3 = 0.01593 W/K.
+    #[test]
+    fn check_tells_what_a_body_holds_and_exchanges() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/crucible.toml");
+        let report = ValidCase::open(&path, &[]).unwrap().report();
+        for words in [
+            "`crucible`: 0.0005 kg, 0.075 J/K at 960 K",
+            "gas over ",
+            "over 0.0003 m^2, 0.0159 W/K at 1160 K: takes their temperature in 4.71 s",
+            "particles that touch 1 of the walls",
+        ] {
+            assert!(report.contains(words), "`{words}` is missing in: {report}");
+        }
+    }
+}

@@ -12,20 +12,6 @@ use crate::case::model::{Case, FieldBand, Measure, ToleranceBand};
 use crate::report::plot::between;
 use crate::results::read::{self, Arrays};
 
-/// Arrays of a snapshot file that are no fields.
-const GEOMETRY: [&str; 10] = [
-    "points",
-    "connectivity",
-    "offsets",
-    "types",
-    "faces",
-    "faceoffsets",
-    "id",
-    "population",
-    "radius",
-    "TimeValue",
-];
-
 /// The difference between two runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Norms {
@@ -332,7 +318,7 @@ fn snapshots(
         };
         for name in arrays[0]
             .keys()
-            .filter(|name| !GEOMETRY.contains(&name.as_str()))
+            .filter(|name| read::is_field(name) && *name != "radius")
         {
             let place = match found.iter().position(|field| field.name == *name) {
                 Some(place) => place,

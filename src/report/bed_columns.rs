@@ -3,19 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::number::axis_label;
-use crate::results::read::{Array, Arrays};
-
-/// Arrays that say where things are or which, not how they are.
-const OF_ITSELF: [&str; 8] = [
-    "points",
-    "connectivity",
-    "offsets",
-    "types",
-    "faces",
-    "faceoffsets",
-    "id",
-    "population",
-];
+use crate::results::read::{Array, Arrays, is_field};
 
 /// A field.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +25,7 @@ pub(super) fn columns(
     let column = |(name, array): (&String, &Array)| {
         let ragged = name.ends_with(".lengths") || arrays.contains_key(&format!("{name}.lengths"));
         let fits = array.values.len() == count * array.components;
-        if OF_ITSELF.contains(&name.as_str()) || ragged || !fits {
+        if !is_field(name) || ragged || !fits {
             return None;
         }
         let unit = units.get(name).map_or("", String::as_str);

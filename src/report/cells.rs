@@ -2,10 +2,12 @@
 
 use std::collections::HashMap;
 
+use calcine_coupler::physics::Vec3;
+
 use crate::results::read::Arrays;
 
 /// A point in m.
-pub(super) type Point = [f64; 3];
+pub(super) type Point = Vec3;
 
 /// Faces of a hexahedron by its corners in VTK's order.
 const FACES: [[usize; 4]; 6] = [
@@ -27,7 +29,7 @@ pub(super) struct GasCell {
 }
 
 /// Calls `with` for each cell with its faces, each by its points.
-fn each_cell(gas: &Arrays, mut with: impl FnMut(&[Vec<usize>])) {
+pub(super) fn each_cell(gas: &Arrays, mut with: impl FnMut(&[Vec<usize>])) {
     let list = |name: &str| gas.get(name).map_or(&[][..], |array| &array.values);
     let (corners, ends) = (list("connectivity"), list("offsets"));
     let (streams, stream_ends) = (list("faces"), list("faceoffsets"));
@@ -66,30 +68,17 @@ fn faces_of_stream(stream: &[f64]) -> Vec<Vec<usize>> {
 
 fn point(points: &[f64], number: usize) -> Point {
     let at = |axis: usize| points.get(3 * number + axis).copied().unwrap_or(0.0);
-    [at(0), at(1), at(2)]
+    Point::new(at(0), at(1), at(2))
 }
 
 fn points(gas: &Arrays) -> &[f64] {
     gas.get("points").map_or(&[], |array| &array.values)
 }
 
-/// The difference of two points.
-pub(super) fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// The cross product.
-pub(super) fn cross(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-/// The scalar product.
-pub(super) fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// The points of a snapshot: of particles their centres.
+pub(super) fn all_points(arrays: &Arrays) -> Vec<Point> {
+    let points = points(arrays).as_chunks::<3>().0;
+    points.iter().map(|point| Point::from(*point)).collect()
 }
 
 /// All cells; the volume is that of the pyramids from the centre onto the faces.
@@ -100,18 +89,13 @@ pub(super) fn cells(gas: &Arrays) -> Vec<GasCell> {
         let mut corners: Vec<usize> = faces.iter().flatten().copied().collect();
         corners.sort_unstable();
         corners.dedup();
-        let mut centre = [0.0; 3];
-        for &corner in &corners {
-            let own = point(points, corner);
-            for axis in 0..3 {
-                centre[axis] += own[axis] / corners.len() as f64;
-            }
-        }
+        let sum: Point = corners.iter().map(|&corner| point(points, corner)).sum();
+        let centre = sum / corners.len() as f64;
         let mut volume = 0.0;
         for face in faces {
-            let from = |at: usize| minus(point(points, face[at]), centre);
+            let from = |at: usize| point(points, face[at]) - centre;
             for at in 2..face.len() {
-                volume += dot(from(0), cross(from(at - 1), from(at))).abs() / 6.0;
+                volume += from(0).dot(&from(at - 1).cross(&from(at))).abs() / 6.0;
             }
         }
         cells.push(GasCell { centre, volume });

@@ -14,6 +14,7 @@ mod probes;
 mod profiles;
 mod section;
 mod shade;
+mod spread;
 mod swept_axis;
 mod ticks;
 mod view;

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::bed_columns::{BedColumn, columns};
-use super::cells::{Point, cells};
+use super::cells::{Point, all_points, cells};
 use super::colour::{self, Range};
 use super::number::{axis_label, span};
 use super::plot::{Curve, Plot, Stroke};
+use super::spread::spread;
 use crate::results::ResultsError;
 use crate::results::read::{self, Arrays};
 
@@ -53,10 +54,8 @@ pub(super) fn render(directory: &Path) -> Result<Distributions, ResultsError> {
     let beds = read::collection(directory, "particles.pvd")?;
     let count = gas.len().min(beds.len());
     let units = read::units(directory);
-    let shown = count.min(TIMES);
     let mut snapshots = Vec::new();
-    for place in 0..shown {
-        let number = place * (count - 1) / (shown - 1).max(1);
+    for number in spread(count, TIMES) {
         let (gas_file, bed_file) = (
             read::arrays(&gas[number].1)?,
             read::arrays(&beds[number].1)?,
@@ -90,11 +89,7 @@ impl Snapshot {
             .iter()
             .map(|cell| (cell.centre, cell.volume))
             .collect();
-        let points = bed.get("points").map_or(&[][..], |array| &array.values);
-        let centres: Vec<Point> = points
-            .chunks_exact(3)
-            .map(|centre| [centre[0], centre[1], centre[2]])
-            .collect();
+        let centres = all_points(bed);
         let weights = bed.get("weight").map(|array| array.values.clone());
         Self {
             time,
@@ -319,7 +314,7 @@ mod tests {
     #[test]
     fn each_layer_of_a_regular_mesh_stands_by_itself() {
         let cells: Vec<(Point, f64)> = (0..11)
-            .map(|k| ([0.0, 0.0, 0.01 * f64::from(k)], 1.0))
+            .map(|k| (Point::new(0.0, 0.0, 0.01 * f64::from(k)), 1.0))
             .collect();
         let (range, layers) = layers_of(&cells, 2).unwrap();
         assert_eq!(layers, 11);
@@ -327,7 +322,7 @@ mod tests {
         let (places, _) = layered(items, range, layers);
         assert_eq!(places.len(), 11);
         // Halved cells in the middle do not split their neighbours' layers.
-        let halves = [0.0475, 0.0525].map(|z| ([0.0, 0.0, z], 0.5));
+        let halves = [0.0475, 0.0525].map(|z| (Point::new(0.0, 0.0, z), 0.5));
         let refined: Vec<(Point, f64)> = cells.into_iter().chain(halves).collect();
         assert_eq!(layers_of(&refined, 2).unwrap().1, 11);
     }

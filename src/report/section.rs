@@ -1,22 +1,7 @@
 //! The plane section of a snapshot: polygons of gas cells and circles of particles, seen along y.
 
+use super::cells::each_cell;
 use crate::results::read::Arrays;
-
-/// Corners of the twelve edges of a hexahedron in VTK's order.
-const EDGES: [[usize; 2]; 12] = [
-    [0, 1],
-    [1, 2],
-    [2, 3],
-    [3, 0],
-    [4, 5],
-    [5, 6],
-    [6, 7],
-    [7, 4],
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-];
 
 /// A point of the picture: x to the right, z upwards, in m.
 pub(super) type Spot = [f64; 2];
@@ -52,31 +37,18 @@ pub(super) fn plane(gas: &Arrays) -> f64 {
 
 /// The cells that the plane cuts.
 pub(super) fn polygons(gas: &Arrays, plane: f64) -> Vec<Polygon> {
-    let list = |name: &str| gas.get(name).map_or(&[][..], |array| &array.values);
-    let points = list("points");
-    let (corners, ends) = (list("connectivity"), list("offsets"));
-    let (faces, face_ends) = (list("faces"), list("faceoffsets"));
+    let points = gas.get("points").map_or(&[][..], |array| &array.values);
     let mut polygons = Vec::new();
-    let (mut start, mut face_start) = (0, 0);
-    for (cell, &end) in ends.iter().enumerate() {
-        let end = (end as usize).min(corners.len());
-        let nodes = &corners[start.min(end)..end];
-        start = end;
-        let face_end = face_ends.get(cell).copied().unwrap_or(-1.0);
-        let edges = if face_end < 0.0 {
-            hexahedron_edges(nodes)
-        } else {
-            let face_end = (face_end as usize).min(faces.len());
-            let stream = &faces[face_start.min(face_end)..face_end];
-            face_start = face_end;
-            polyhedron_edges(stream)
-        };
-        let cuts = edges.iter().filter_map(|&edge| cut(points, edge, plane));
+    let mut cell = 0;
+    each_cell(gas, |faces| {
+        let edges = edges(faces).into_iter();
+        let cuts = edges.filter_map(|edge| cut(points, edge, plane));
         let corners = hull(cuts.collect());
         if corners.len() > 2 {
             polygons.push(Polygon { cell, corners });
         }
-    }
+        cell += 1;
+    });
     polygons
 }
 
@@ -124,28 +96,16 @@ pub(super) fn legend(particles: &Arrays) -> &'static str {
     }
 }
 
-fn hexahedron_edges(nodes: &[f64]) -> Vec<[usize; 2]> {
-    if nodes.len() != 8 {
-        return Vec::new();
-    }
-    EDGES
-        .iter()
-        .map(|edge| edge.map(|corner| nodes[corner] as usize))
-        .collect()
-}
-
-/// Edges of a polyhedron from VTK's stream: number of faces, then each face's size and points.
-fn polyhedron_edges(stream: &[f64]) -> Vec<[usize; 2]> {
-    let mut edges = Vec::new();
-    let mut rest = stream.get(1..).unwrap_or_default();
-    while let Some((&size, after)) = rest.split_first() {
-        let size = (size as usize).min(after.len());
-        let face = &after[..size];
-        for place in 0..size {
-            edges.push([face[place] as usize, face[(place + 1) % size] as usize]);
-        }
-        rest = &after[size..];
-    }
+/// The edges of faces, each once.
+fn edges(faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
+    let of_face = |face: &Vec<usize>| -> Vec<[usize; 2]> {
+        let next = face.iter().cycle().skip(1);
+        let pairs = face.iter().zip(next);
+        pairs.map(|(&a, &b)| [a.min(b), a.max(b)]).collect()
+    };
+    let mut edges: Vec<_> = faces.iter().flat_map(of_face).collect();
+    edges.sort_unstable();
+    edges.dedup();
     edges
 }
 
@@ -233,12 +193,20 @@ mod tests {
             4.0, 3.0, 0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 3.0, 3.0, 1.0, 2.0, 3.0, 3.0, 0.0, 2.0, 3.0,
         ];
         let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0];
-        let edges = polyhedron_edges(&stream);
-        assert_eq!(edges.len(), 12);
-        let cuts = edges
-            .iter()
-            .filter_map(|&edge| cut(&points, edge, 0.5))
-            .collect();
-        assert_eq!(hull(cuts), [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]]);
+        let list = |values: &[f64]| Array {
+            components: 1,
+            values: values.to_vec(),
+        };
+        let gas = Arrays::from([
+            ("points".to_owned(), list(&points)),
+            ("connectivity".to_owned(), list(&[0.0, 1.0, 2.0, 3.0])),
+            ("offsets".to_owned(), list(&[4.0])),
+            ("faces".to_owned(), list(&stream)),
+            ("faceoffsets".to_owned(), list(&[stream.len() as f64])),
+        ]);
+        each_cell(&gas, |faces| assert_eq!(edges(faces).len(), 6));
+        let found = polygons(&gas, 0.5);
+        assert_eq!((found.len(), found[0].cell), (1, 0));
+        assert_eq!(found[0].corners, [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]]);
     }
 }

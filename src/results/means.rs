@@ -16,7 +16,7 @@ use calcine_coupler::time::Ticks;
 
 use super::ResultsError;
 use super::snapshot::{self, Field, Values};
-use crate::case::model::{MeanSpec, Output};
+use crate::case::model::MeanSpec;
 
 /// Name of the state in a checkpoint directory.
 const STATE: &str = "means.state";
@@ -106,22 +106,6 @@ impl MadeField {
     }
 }
 
-/// The fields of the gas that are averaged, as a snapshot has them.
-fn gas_fields<'a>(
-    spec: &MeanSpec,
-    species: &'a [String],
-    moment: &CommittedState<'a>,
-) -> Vec<Field<'a>> {
-    let output = Output {
-        every: Ticks::new(0),
-        series_every: None,
-        gas: spec.gas.clone(),
-        particles: Vec::new(),
-        means: None,
-    };
-    snapshot::gas_fields(&output, species, moment)
-}
-
 /// Quantities of particles that are averaged.
 fn particle_fields(spec: &MeanSpec) -> Vec<MeanField> {
     let known = [
@@ -149,7 +133,7 @@ impl FieldMeans {
     /// Of a run at its start or where it resumes.
     pub fn new(spec: &MeanSpec, species: &[String], moment: &CommittedState<'_>) -> Self {
         let cells = moment.mesh.cells();
-        let gas = gas_fields(spec, species, moment).into_iter();
+        let gas = snapshot::gas_fields(&spec.gas, species, moment).into_iter();
         let gas: Vec<MeanField> = gas
             .map(|field| MeanField {
                 name: field.name.into(),
@@ -187,7 +171,7 @@ impl FieldMeans {
         }
         self.passed += span;
         let span = Ticks::new(span).seconds();
-        let fields = gas_fields(&self.spec, species, moment);
+        let fields = snapshot::gas_fields(&self.spec.gas, species, moment);
         let mut values = Vec::new();
         for cell in 0..moment.mesh.cells() {
             values.clear();

@@ -77,6 +77,22 @@ pub struct Array {
 /// The arrays of a snapshot file by name: `points`, connectivity, and the fields.
 pub type Arrays = BTreeMap<String, Array>;
 
+/// False of the arrays of a snapshot file that say where things are or which, not how they are.
+pub fn is_field(name: &str) -> bool {
+    ![
+        "points",
+        "connectivity",
+        "offsets",
+        "types",
+        "faces",
+        "faceoffsets",
+        "id",
+        "population",
+        "TimeValue",
+    ]
+    .contains(&name)
+}
+
 /// The snapshots of a `.pvd` file: process time in s and file.
 pub fn collection(directory: &Path, name: &str) -> Result<Vec<(f64, PathBuf)>, ResultsError> {
     let path = directory.join(name);

@@ -223,7 +223,7 @@ impl Recorder {
                 sites,
                 rows,
                 snapshots,
-                gas: &snapshot::gas_fields(output, self.case.gas.properties.species(), moment),
+                gas: &snapshot::gas_fields(&output.gas, self.case.gas.properties.species(), moment),
                 particles: &snapshot::particle_fields(output, &inside, moment),
             },
         )?;

@@ -98,13 +98,13 @@ pub(super) fn gas<'a>(
     species: &'a [String],
     moment: &CommittedState<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
-    let fields = gas_fields(output, species, moment);
+    let fields = gas_fields(&output.gas, species, moment);
     of_length(fields, moment.mesh.cells(), "gas")
 }
 
-/// The same of whatever lengths, in a fixed order; mass fractions go by the names of the species.
+/// Those of these names, of whatever lengths, in a fixed order; mass fractions go by the names of the species.
 pub(super) fn gas_fields<'a>(
-    output: &Output,
+    asked: &[String],
     species: &'a [String],
     moment: &CommittedState<'a>,
 ) -> Vec<Field<'a>> {
@@ -137,8 +137,8 @@ pub(super) fn gas_fields<'a>(
             Scalar(&moment.bed.void_fraction),
         ),
     ];
-    let mut fields = chosen(&all, &output.gas);
-    if output.gas.iter().any(|name| name == MASS_FRACTIONS) {
+    let mut fields = chosen(&all, asked);
+    if asked.iter().any(|name| name == MASS_FRACTIONS) {
         fields.extend(species.iter().enumerate().map(|(column, name)| {
             let values = Values::Column {
                 table: gas.composition,
@@ -148,7 +148,7 @@ pub(super) fn gas_fields<'a>(
             field(name, "1", "mass fraction of this species", values)
         }));
     }
-    if output.gas.iter().any(|name| name == TURBULENCE) {
+    if asked.iter().any(|name| name == TURBULENCE) {
         let eddies = gas.turbulence;
         for (name, unit, description, values) in [
             (

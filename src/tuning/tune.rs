@@ -405,7 +405,7 @@ pub fn tune_sample(
 }
 
 /// The curves of a problem, and the model's; whether they were fitted.
-fn curves(
+pub fn curves(
     problem: &SampleProblem,
     places: &[f64],
     is_fitted: bool,

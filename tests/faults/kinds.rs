@@ -65,6 +65,8 @@ fn an_openfoam_that_diverges_says_where_and_ends_with_its_own_exit_code() {
         "gas.patch.bottom.inlet.scalars=value",
         "--set",
         "time.gas_storage=process",
+        "--set",
+        "gas.controls.convection=central",
     ];
     let all = [&BOTH[..], &SHORT, &absurd].concat();
     let run = calcine(&case(), &all, &directory.path().join("run"))
@@ -80,6 +82,7 @@ fn an_openfoam_that_diverges_says_where_and_ends_with_its_own_exit_code() {
         "OpenFOAM (gas)",
         "diverged",
         "has its largest Courant number, ",
+        "`gas.controls.convection` is central",
         "the end of its log",
     ] {
         assert!(text.contains(word), "`{word}` is missing in: {text}");

@@ -7,6 +7,7 @@ use std::process::Command;
 
 use calcine::case::parse_tuning;
 use calcine::results::Summary;
+use calcine::tuning::tune;
 use calcine_coupler::ledger::STORAGE_CLOCK;
 use calcine_tuning::{ComparedQuantity, SampleProblem, TuningProblem};
 use serde_json::Value;
@@ -219,26 +220,21 @@ fn errors(folder: &Path, changes: &[(&str, &str)]) -> [Vec<Errors>; 2] {
             problem.space().place(k, stated.1)
         })
         .collect();
-    let responses = problem.responses(&places).unwrap();
-    let untuned = problem
-        .targets()
-        .iter()
-        .zip(&responses)
-        .map(|(target, model)| {
-            let pairs = |quantity, model: &[f64]| -> Vec<[f64; 2]> {
-                let measured = target.of(quantity).unwrap();
-                measured.iter().zip(model).map(|(x, m)| [*x, *m]).collect()
-            };
-            let mean = |pairs: &[[f64; 2]]| {
-                pairs.iter().map(|[x, m]| ((m - x) / x).abs()).sum::<f64>() / pairs.len() as f64
-            };
-            let temperature = pairs(ComparedQuantity::Temperature, &model.temperature);
-            let mass = pairs(ComparedQuantity::Mass, &model.mass);
-            let reacting = mass
-                .iter()
-                .filter(|[x, _]| (0.001..0.999).contains(&((1.0 - x) / case.loss)));
-            let largest = reacting.map(|[x, m]| (m - x).abs() / case.loss);
-            Errors([mean(&temperature), mean(&mass), largest.fold(0.0, f64::max)])
-        });
+    let curves = tune::curves(&problem, &places, false).unwrap();
+    let of = |target: &str, quantity| {
+        let mut own = curves.iter();
+        let own = own.find(|one| one.target == target && one.quantity == quantity);
+        own.unwrap().errors(case.loss)
+    };
+    let untuned = FURNACES.iter().map(|furnace| {
+        let mass = of(furnace.name, ComparedQuantity::Mass);
+        let temperature = of(furnace.name, ComparedQuantity::Temperature);
+        let all = [
+            temperature.mean_relative,
+            mass.mean_relative,
+            mass.largest_of_loss,
+        ];
+        Errors(all.map(Option::unwrap))
+    });
     [untuned.collect(), tuned]
 }

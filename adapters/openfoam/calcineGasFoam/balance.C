@@ -47,10 +47,8 @@ void Foam::calcine::gas::finishReport(report& result) const
     balanceMomentum(result);
     for (scalarList& flows : result.patches)
     {
-        for (scalar& flow : flows)
-        {
-            reduce(flow, sumOp<scalar>());
-        }
+        Pstream::listCombineGather(flows, plusEqOp<scalar>());
+        Pstream::listCombineScatter(flows);
     }
 }
 

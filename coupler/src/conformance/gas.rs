@@ -386,6 +386,16 @@ fn patches_add_up(received: &CellReceived) -> Result<(), LawError> {
         return Ok(());
     }
     let sum = |of: &dyn Fn(&PatchFlow) -> f64| patches.iter().map(of).sum::<f64>();
+    for (k, balance) in received.species.iter().enumerate() {
+        let flow = SPAN[1] * sum(&|one| one.species[k]);
+        let off = (flow - balance.boundary).abs();
+        holds(off <= 1e-12 * balance.boundary_magnitude, || {
+            format!(
+                "species {k} through the patches adds up to {flow} kg, through the boundary to {}",
+                balance.boundary
+            )
+        })?;
+    }
     let [x, y, z] = &received.momentum;
     let momentum = [x, y, z].map(|one| one.boundary_magnitude).iter().sum();
     for (name, flow, span, balance, size) in [

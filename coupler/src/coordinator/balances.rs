@@ -115,10 +115,6 @@ impl WindowBalances<'_> {
         };
         let walls = || reservoirs.iter().enumerate().filter_map(outside);
         let way = TwoWayFlow::of_net;
-        let through_walls = TwoWayFlow::of_flows(
-            walls().sum::<f64>() * process,
-            walls().map(f64::abs).sum::<f64>() * process,
-        );
         let [walls, walls_magnitude] = [walls().sum::<f64>(), walls().map(f64::abs).sum()];
         let [walls, walls_magnitude] = [walls, walls_magnitude].map(|watt| watt * process);
         let bodies = self.bodies;
@@ -157,7 +153,7 @@ impl WindowBalances<'_> {
             ("boundary", through_boundary(gas, scale)),
             ("reservoir", way(scale * gas.reservoir)),
             ("sources", way(scale * gas.source)),
-            ("walls", through_walls),
+            ("walls", TwoWayFlow::of_flows(walls, walls_magnitude)),
             (PRESCRIBED_HEAT, way(self.supplied.sum)),
             ("radiated", way(bodies.radiated)),
             ("particles", way(-(changes.sum + scale * formed))),

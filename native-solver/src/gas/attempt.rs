@@ -51,8 +51,8 @@ pub struct AttemptFrame<'a> {
     pub is_stage: bool,
 }
 
-/// Of several stages the second begins (1 − γ)/γ times as far from the start as the first came, with what the first left of continuity and of
-/// the heat by which gas expands: they are solved closer by this share.
+/// Of several stages the second begins (1 − γ)/γ = 2.4 times as far from the start as the first came, with what that left of continuity, which drives
+/// pressures of its own over γ Δt: continuity is judged by this share of the terms of short windows.
 const STAGES: f64 = 1e-2;
 /// Tolerance from which on that is close enough.
 const CLOSE: f64 = 1e-9;

@@ -4,6 +4,7 @@ use calcine_coupler::part::{Balance, CellReceived, PatchFlow};
 use calcine_coupler::physics::Vec3;
 
 use super::attempt::{AttemptFrame, CellProperties};
+use super::boundary::of_all;
 use super::enthalpy::EnthalpyFlows;
 use super::momentum::Momentum;
 use super::species::SpeciesEquations;
@@ -28,54 +29,35 @@ pub fn receive(
         frame.exchange.drag_source[cell]
             - frame.exchange.drag_coefficient[cell] * now.velocity[cell]
     });
-    received.mass = mass(frame, now);
+    let flows = frame.boundary.flows_by_patch(|face| -now.flux[face]);
+    let forces: Vec<[f64; 6]> = frame.boundary.by_patch(|face| {
+        let inflow = momentum.inflow(frame, now, face);
+        side_by_side([inflow, inflow.abs()])
+    });
+    received.mass = mass(frame, now, of_all(&flows));
     species.balances(frame, now, &mut received.species);
     received.energy = energy(frame, taken, &received.species, now);
-    received.momentum = momenta(frame, material, momentum, now, &received.drag);
+    received.momentum = momenta(frame, material, now, of_all(&forces), &received.drag);
     received.storage_clock = storage_clock(frame, now);
-    patches(frame, momentum, taken, species, now, &mut received.patches);
-}
-
-/// What passes each patch.
-fn patches(
-    frame: &AttemptFrame<'_>,
-    momentum: &Momentum,
-    taken: &EnthalpyFlows,
-    species: &SpeciesEquations,
-    now: &GasState,
-    flows: &mut Vec<PatchFlow>,
-) {
-    let mass = frame.boundary.by_patch(|face| -now.flux[face]);
-    let along = [0, 1, 2].map(|axis| {
-        let inflow = |face| momentum.inflow(frame, now, face)[axis];
-        frame.boundary.by_patch(inflow)
-    });
-    flows.clear();
-    flows.extend(mass.iter().enumerate().map(|(patch, mass)| PatchFlow {
-        heat: taken.patches[patch],
-        mass: *mass,
-        momentum: Vec3::from([0, 1, 2].map(|axis: usize| along[axis][patch])),
-        species: species.patches.iter().map(|of| of[patch]).collect(),
+    received.patches.clear();
+    received.patches.extend((0..flows.len()).map(|patch| {
+        let [x, y, z, ..] = forces[patch];
+        PatchFlow {
+            heat: taken.patches[patch][0],
+            mass: flows[patch][0],
+            momentum: Vec3::new(x, y, z),
+            species: species.patches.iter().map(|of| of[patch][0]).collect(),
+        }
     }));
-}
-
-/// Sums of a boundary term and of its magnitude over all boundary faces.
-fn boundary(frame: &AttemptFrame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> [f64; 2] {
-    let internal = frame.grid.internal;
-    sums(frame.grid.faces.len() - internal, |face| {
-        let inflow = inflow(internal + face);
-        [inflow, inflow.abs()]
-    })
 }
 
 /// What passes the boundary; where nothing does, the magnitude is what circulates through the faces
 /// within, because the rounding of that is all that the cells of a fluid of constant density store.
-fn mass(frame: &AttemptFrame<'_>, now: &GasState) -> Balance {
+fn mass(frame: &AttemptFrame<'_>, now: &GasState, [inflow, mut magnitude]: [f64; 2]) -> Balance {
     let [stored, stored_magnitude] = sums(frame.grid.cells(), |cell| {
         let stored = now.mass[cell] - frame.old.mass[cell];
         [stored, stored.abs()]
     });
-    let [inflow, mut magnitude] = boundary(frame, |face| -now.flux[face]);
     if magnitude == 0.0 {
         [magnitude] = sums(frame.grid.internal, |face| [now.flux[face].abs()]);
     }
@@ -112,7 +94,7 @@ fn energy(
         let stored = now.heat(cell) - old.heat(cell);
         [stored, stored.abs(), taken.heat[cell]]
     });
-    let [inflow, magnitude] = taken.boundary;
+    let [inflow, magnitude] = of_all(&taken.patches);
     let compression = taken.compression * frame.storage_span;
     let reacted = reacted(frame, species);
     Balance {
@@ -133,8 +115,8 @@ fn energy(
 fn momenta(
     frame: &AttemptFrame<'_>,
     material: &CellProperties,
-    momentum: &Momentum,
     now: &GasState,
+    faces: [f64; 6],
     drag: &[Vec3],
 ) -> [Balance; 3] {
     let (grid, old, span) = (frame.grid, frame.old, frame.motion_span);
@@ -148,10 +130,6 @@ fn momenta(
         let residual = span * outflow(grid, &now.flux, cell) + gained;
         let source = span * force + residual * velocity;
         side_by_side([stored, stored.abs(), drag[cell], source, source.abs()])
-    });
-    let faces: [f64; 6] = sums(grid.faces.len() - grid.internal, |face| {
-        let inflow = momentum.inflow(frame, now, grid.internal + face);
-        side_by_side([inflow, inflow.abs()])
     });
     [0, 1, 2].map(|axis| Balance {
         stored: cells[axis],

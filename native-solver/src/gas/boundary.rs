@@ -11,7 +11,7 @@ use calcine_coupler::setup::{
 };
 
 use super::error::NativeError;
-use crate::numerics::parallel::sum;
+use crate::numerics::parallel::sums;
 
 /// Slope of a wall's velocity against the wall that counts as round-off.
 const TANGENTIAL: f64 = 1e-9;
@@ -162,6 +162,11 @@ fn condition_of<'a>(setup: &'a GasSetup, patch: &str) -> Result<&'a GasPatch, Na
     named.map(|(_, condition)| condition).ok_or_else(lacking)
 }
 
+/// The sums of all patches.
+pub fn of_all<const N: usize>(patches: &[[f64; N]]) -> [f64; N] {
+    std::array::from_fn(|place| patches.iter().map(|own| own[place]).sum())
+}
+
 impl Boundaries {
     /// Matches the setup's patches with the mesh's and checks their numbers.
     pub fn new(mesh: &Mesh, setup: &GasSetup) -> Result<Self, NativeError> {
@@ -267,15 +272,26 @@ impl Boundaries {
         self.patches[self.patch_of[face - self.internal] as usize].at(face)
     }
 
-    /// A value of each patch of the mesh by those of its faces; 0 of periodic ones and those without faces.
-    pub fn by_patch(&self, of_face: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
-        let mut values = vec![0.0; self.of_mesh];
+    /// Sums over the faces of each patch of the mesh; 0 of periodic ones and those without faces.
+    pub fn by_patch<const N: usize>(
+        &self,
+        of_face: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> Vec<[f64; N]> {
+        let mut values = vec![[0.0; N]; self.of_mesh];
         let mut first = self.internal;
         for boundary in &self.patches {
-            values[boundary.place] = sum(boundary.count, |face| of_face(first + face));
+            values[boundary.place] = sums(boundary.count, |face| of_face(first + face));
             first += boundary.count;
         }
         values
+    }
+
+    /// The same of flows inwards, and of their magnitudes.
+    pub fn flows_by_patch(&self, of_face: impl Fn(usize) -> f64 + Sync) -> Vec<[f64; 2]> {
+        self.by_patch(|face| {
+            let inflow = of_face(face);
+            [inflow, inflow.abs()]
+        })
     }
 
     /// True where a patch is a side of a wedge.

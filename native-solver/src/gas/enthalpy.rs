@@ -67,10 +67,8 @@ pub struct Enthalpy {
 pub struct EnthalpyFlows {
     /// Heat from the particles to each cell in W.
     pub heat: Vec<f64>,
-    /// Flow of enthalpy into the domain in W, and the sum of its magnitudes over the faces.
-    pub boundary: [f64; 2],
-    /// The flow through each patch of the mesh.
-    pub patches: Vec<f64>,
+    /// Flow of enthalpy into the domain in W through each patch of the mesh, and the sum of its magnitudes over the faces.
+    pub patches: Vec<[f64; 2]>,
     /// Σ ε V (p₀ − p₀_old)/Δτ in W.
     pub compression: f64,
 }
@@ -362,16 +360,14 @@ impl Enthalpy {
         }
     }
 
-    /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K), and the mass in kg/s by which gas
-    /// of these cells would expand for it, relative to `most` in kg/s.
-    pub fn residual(&self, now: &GasState, most: f64) -> f64 {
-        let [error, content, expands] = sums(now.enthalpy.len(), |cell| {
+    /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K).
+    pub fn residual(&self, now: &GasState) -> f64 {
+        let [error, content] = sums(now.enthalpy.len(), |cell| {
             let error = self.source[cell] - self.matrix.row_times(cell, &now.enthalpy);
-            let heat = self.heat_capacity[cell] * now.temperature[cell];
-            let capacity = self.matrix.diagonal()[cell] * heat;
-            [error.abs(), capacity, error.abs() / heat]
+            let capacity = self.matrix.diagonal()[cell] * self.heat_capacity[cell];
+            [error.abs(), capacity * now.temperature[cell]]
         });
-        (error / content).max(expands / most)
+        error / content
     }
 
     /// Solves for the enthalpy; returns the iterations.
@@ -475,13 +471,8 @@ impl Enthalpy {
         let mut taken = std::mem::take(&mut self.taken);
         taken.heat.resize(grid.cells(), 0.0);
         fill(&mut taken.heat, |cell| self.heat(now, cell));
-        taken.boundary = sums(grid.faces.len() - grid.internal, |face| {
-            let inflow = self.inflow(frame, now, grid.internal + face);
-            [inflow, inflow.abs()]
-        });
-        taken.patches = frame
-            .boundary
-            .by_patch(|face| self.inflow(frame, now, face));
+        let inflow = |face| self.inflow(frame, now, face);
+        taken.patches = frame.boundary.flows_by_patch(inflow);
         let rise = (now.base_pressure - frame.old.base_pressure) / frame.storage_span;
         let pores = |cell: usize| frame.void_fraction[cell] * grid.volume[cell];
         taken.compression = if rise == 0.0 {

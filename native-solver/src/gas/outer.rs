@@ -186,19 +186,14 @@ impl Equations {
     fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> f64 {
         self.assess_flow(frame, now);
         self.react(frame);
-        // What the scalars leave makes the gas expand behind continuity. From window to window that lags evenly; from the first stage
-        // to the second it does not, and drives pressures as a mismatch of continuity does.
-        let most = match frame.closer() < 1.0 {
-            true => self.continuity.terms,
-            false => f64::INFINITY,
-        };
-        let by = (self.limited, most);
-        let species = self.species.residual(frame, &self.material, by, now);
+        let species = self
+            .species
+            .residual(frame, &self.material, self.limited, now);
         self.watch.lap(&mut self.phases.species);
         let carried = &self.species.carried;
         self.enthalpy
             .assemble(frame, &self.material, carried, self.share, now);
-        let enthalpy = self.enthalpy.residual(now, most);
+        let enthalpy = self.enthalpy.residual(now);
         self.watch.lap(&mut self.phases.enthalpy);
         let change = self.chemistry.change;
         tracing::debug!(

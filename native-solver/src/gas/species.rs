@@ -55,11 +55,9 @@ pub struct SpeciesEquations {
     pub carried: Vec<f64>,
     temperature_gradients: Vec<Vec3>,
     temperature_bounds: Vec<[f64; 2]>,
-    /// Flow of each species into the domain in kg/s and the sum of its magnitudes over the faces, as the
-    /// last solve took them.
-    pub boundary: Vec<[f64; 2]>,
-    /// The same flow through each patch of the mesh, of each species.
-    pub patches: Vec<Vec<f64>>,
+    /// Flow of each species into the domain in kg/s through each patch of the mesh and the sum of its magnitudes over the faces, as
+    /// the last solve took them.
+    pub patches: Vec<Vec<[f64; 2]>>,
 }
 
 impl SpeciesEquations {
@@ -80,7 +78,6 @@ impl SpeciesEquations {
             carried: Vec::new(),
             temperature_gradients: Vec::new(),
             temperature_bounds: Vec::new(),
-            boundary: Vec::new(),
             patches: Vec::new(),
         }
     }
@@ -96,7 +93,6 @@ impl SpeciesEquations {
         self.gradients.resize(species, vec![Vec3::zeros(); cells]);
         self.bounds.resize(species, vec![[0.0; 2]; cells]);
         self.explicit.resize(species, vec![0.0; faces]);
-        self.boundary.resize(species, [0.0; 2]);
         self.diffusion.resize(faces, 0.0);
         self.limiters.resize(faces, 0.0);
         self.faces.resize(faces, 0.0);
@@ -173,12 +169,12 @@ impl SpeciesEquations {
     }
 
     /// Largest change of a mass fraction that the equations at hand still ask for: their residual
-    /// relative to what the cells hold and what flows through them, in kg/s, and to `most`, if that is less.
+    /// relative to what the cells hold and what flows through them,.
     pub fn residual(
         &mut self,
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
-        (share, most): (f64, f64),
+        share: f64,
         now: &GasState,
     ) -> f64 {
         if frame.species() == 0 {
@@ -198,7 +194,7 @@ impl SpeciesEquations {
                 let error = self.source[cell] - self.matrix.row_times(cell, &self.fractions[k]);
                 [error.abs(), self.matrix.diagonal()[cell]]
             });
-            worst = worst.max(error / content.min(most));
+            worst = worst.max(error / content);
         }
         worst
     }

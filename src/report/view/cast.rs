@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::report::bed_columns::columns;
-use crate::report::cells::Point;
+use crate::report::cells::{Point, all_points};
 use crate::report::colour::Range;
 use crate::report::number::span;
 use crate::report::section::radii;
+use crate::report::spread::spread;
 use crate::results::ResultsError;
 use crate::results::read::{self, Arrays};
 
@@ -110,7 +111,7 @@ impl Cast {
             });
             Moment {
                 time: span(*time),
-                centres: centres(bed),
+                centres: all_points(bed),
                 radii: radii(bed),
                 values: values.collect(),
             }
@@ -128,26 +129,6 @@ impl Cast {
     }
 }
 
-/// So many of a number of things, evenly spaced, the first and the last among them; the last alone where one is asked for.
-pub(super) fn spread(all: usize, wanted: usize) -> Vec<usize> {
-    let shown = wanted.min(all);
-    match shown {
-        0 => Vec::new(),
-        1 => vec![all - 1],
-        _ => (0..shown)
-            .map(|place| place * (all - 1) / (shown - 1))
-            .collect(),
-    }
-}
-
 fn count(bed: &Arrays) -> usize {
     bed.get("points").map_or(0, |array| array.values.len() / 3)
-}
-
-fn centres(bed: &Arrays) -> Vec<Point> {
-    let points = bed.get("points").map_or(&[][..], |array| &array.values);
-    let centres = points.chunks_exact(3);
-    centres
-        .map(|centre| [centre[0], centre[1], centre[2]])
-        .collect()
 }

@@ -1,13 +1,14 @@
 //! The view's data: positions in 16 bits, radii and values in 8, as base64 beside a description in JSON.
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde::Serialize;
 
-use super::cast::{Cast, Moment, spread};
+use super::cast::{Cast, Moment};
 use super::surface::{Surface, on_grid};
 use super::walls::Extent;
-use crate::report::cells::Point;
 use crate::report::colour::{self, Range};
 use crate::report::number::figure;
+use crate::report::spread::spread;
 
 /// The byte of a value that there is not.
 const NONE: u8 = 255;
@@ -31,8 +32,8 @@ const CHOICES: [(usize, usize); 8] = [
 /// What the view reads.
 #[derive(Serialize)]
 pub(super) struct ViewData {
-    low: Point,
-    high: Point,
+    low: [f64; 3],
+    high: [f64; 3],
     radii: [f64; 2],
     stops: &'static [[u8; 3]],
     first: usize,
@@ -205,8 +206,8 @@ impl Chosen {
             (0..TICKS).map(tick).collect()
         };
         Some(ViewData {
-            low: extent[0],
-            high: extent[1],
+            low: extent[0].into(),
+            high: extent[1].into(),
             radii: [radii.low, radii.high],
             stops: &colour::STOPS,
             first: columns
@@ -222,7 +223,7 @@ impl Chosen {
                 .collect(),
             frames,
             walls,
-            bytes: base64(&blocks.bytes),
+            bytes: BASE64_STANDARD.encode(&blocks.bytes),
             stride: self.stride,
         })
     }
@@ -280,66 +281,13 @@ fn words<'a>(values: impl Iterator<Item = &'a u16>) -> Vec<u8> {
     values.flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// Bytes as text (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let at = |place: usize| u32::from(three.get(place).copied().unwrap_or(0));
-        let bits = at(0) << 16 | at(1) << 8 | at(2);
-        for place in 0..4 {
-            let letter = LETTERS[(bits >> (18 - 6 * place) & 63) as usize];
-            text.push(if place > three.len() {
-                '='
-            } else {
-                letter.into()
-            });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
+    use crate::report::cells::Point;
     use crate::results::read::{Array, Arrays};
-
-    fn decoded(text: &str) -> Vec<u8> {
-        let value = |c: u8| match c {
-            b'A'..=b'Z' => c - b'A',
-            b'a'..=b'z' => c - b'a' + 26,
-            b'0'..=b'9' => c - b'0' + 52,
-            b'+' => 62,
-            _ => 63,
-        };
-        let mut bytes = Vec::new();
-        for four in text.as_bytes().chunks(4) {
-            let letters: Vec<u8> = four.iter().copied().filter(|&c| c != b'=').collect();
-            let bits = letters
-                .iter()
-                .fold(0_u32, |bits, &c| bits << 6 | u32::from(value(c)));
-            let bits = bits << (6 * (4 - letters.len()));
-            let all = bits.to_be_bytes();
-            bytes.extend(&all[1..letters.len()]);
-        }
-        bytes
-    }
-
-    #[test]
-    fn base64_has_the_examples_of_its_standard() {
-        for (plain, coded) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-        ] {
-            assert_eq!(base64(plain.as_bytes()), coded);
-            assert_eq!(decoded(coded), plain.as_bytes());
-        }
-    }
 
     /// Particles that rise, with a temperature by their height and a speed by their number.
     fn cast(count: usize, snapshots: usize) -> Cast {
@@ -379,7 +327,7 @@ mod tests {
         Cast::of(&(0..snapshots).map(snapshot).collect::<Vec<_>>(), &units)
     }
 
-    const EXTENT: Extent = [[0.0; 3], [1.0, 1.0, 2.0]];
+    const EXTENT: Extent = [Point::new(0.0, 0.0, 0.0), Point::new(1.0, 1.0, 2.0)];
 
     #[test]
     fn what_is_packed_decodes_to_the_particles_within_the_steps_of_its_grid() {
@@ -391,7 +339,7 @@ mod tests {
             labels,
             ["temperature in K", "speed in m/s", "diameter in mm"]
         );
-        let bytes = decoded(&data.bytes);
+        let bytes = BASE64_STANDARD.decode(&data.bytes).unwrap();
         for (frame, moment) in data.frames.iter().zip(&cast.moments) {
             assert_eq!((frame.count, frame.positions % 2), (500, 0));
             for row in 0..500 {

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::walls::Extent;
-use crate::report::cells::{Point, cross, dot, minus};
+use crate::report::cells::Point;
 
 /// Triangles at most.
 const TRIANGLES: usize = 9000;
@@ -90,7 +90,7 @@ fn turns(polygons: &[Vec<Point>], faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
         }
     }
     let turns = |normals: &[Point]| match normals {
-        [a, b] => dot(*a, *b).abs() < TURN,
+        [a, b] => a.dot(b).abs() < TURN,
         _ => true,
     };
     let mut edges: Vec<[usize; 2]> = beside
@@ -104,18 +104,9 @@ fn turns(polygons: &[Vec<Point>], faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
 
 /// Unit normal of a polygon; zero where it has no area.
 fn normal(polygon: &[Point]) -> Point {
-    let mut sum = [0.0; 3];
-    for at in 2..polygon.len() {
-        let part = cross(
-            minus(polygon[at - 1], polygon[0]),
-            minus(polygon[at], polygon[0]),
-        );
-        for axis in 0..3 {
-            sum[axis] += part[axis];
-        }
-    }
-    let length = dot(sum, sum).sqrt();
-    sum.map(|x| if length > 0.0 { x / length } else { 0.0 })
+    let part = |at: usize| (polygon[at - 1] - polygon[0]).cross(&(polygon[at] - polygon[0]));
+    let sum: Point = (2..polygon.len()).map(part).sum();
+    sum.try_normalize(0.0).unwrap_or_default()
 }
 
 /// One point for each cell of a coarser grid, that farthest from the middle, so that corners stay; and which one each
@@ -192,7 +183,7 @@ mod tests {
             for side in [0.0, 1.0] {
                 for (i, j) in (0..count * count).map(|k| (k / count, k % count)) {
                     let spot = |i: usize, j: usize| {
-                        let mut spot = [side; 3];
+                        let mut spot = Point::repeat(side);
                         spot[(axis + 1) % 3] = i as f64 * step;
                         spot[(axis + 2) % 3] = j as f64 * step;
                         spot
@@ -211,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_cube_has_its_triangles_and_the_edges_at_which_it_turns() {
-        let surface = surface(&cube(10), [[0.0; 3], [1.0; 3]]);
+        let surface = surface(&cube(10), [Point::zeros(), Point::repeat(1.0)]);
         assert_eq!(surface.triangles.len(), 3 * 2 * 6 * 100);
         // Twelve edges in ten pieces.
         assert_eq!(surface.edges.len(), 2 * 12 * 10);
@@ -220,7 +211,7 @@ mod tests {
 
     #[test]
     fn a_fine_cube_is_made_coarser_and_keeps_its_corners() {
-        let surface = surface(&cube(120), [[0.0; 3], [1.0; 3]]);
+        let surface = surface(&cube(120), [Point::zeros(), Point::repeat(1.0)]);
         assert!(surface.triangles.len() <= 3 * TRIANGLES);
         assert!(surface.triangles.len() > 3000);
         for corner in 0..8_u8 {

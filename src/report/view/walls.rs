@@ -7,7 +7,7 @@ use calcine_coupler::motion::WallShape;
 use calcine_coupler::physics::Vec3;
 
 use crate::case;
-use crate::report::cells::{Point, boundary, cross, dot, minus};
+use crate::report::cells::{Point, boundary};
 use crate::results::read::Arrays;
 use crate::results::{CASE, files};
 
@@ -32,12 +32,8 @@ pub(super) fn polygons(directory: &Path, gas: &Arrays) -> Vec<Vec<Point>> {
 /// The box around points; `None` without any.
 pub(super) fn extent<'a>(points: impl Iterator<Item = &'a Point>) -> Option<Extent> {
     points.fold(None, |so_far, point| {
-        let [mut low, mut high] = so_far.unwrap_or([*point; 2]);
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point[axis]);
-            high[axis] = high[axis].max(point[axis]);
-        }
-        Some([low, high])
+        let [low, high] = so_far.unwrap_or([*point; 2]);
+        Some([low.inf(point), high.sup(point)])
     })
 }
 
@@ -63,7 +59,7 @@ fn original(directory: &Path) -> Option<PathBuf> {
 fn of_shape(shape: &WallShape, extent: Extent) -> Vec<Vec<Point>> {
     match shape {
         WallShape::Plane { point, normal } => {
-            let polygon = across(extent, array(point), array(normal));
+            let polygon = across(extent, *point, *normal);
             polygon.into_iter().collect()
         }
         WallShape::Cylinder {
@@ -71,7 +67,7 @@ fn of_shape(shape: &WallShape, extent: Extent) -> Vec<Vec<Point>> {
             axis,
             radius,
         } => {
-            let along = corners(extent).map(|corner| dot(minus(corner, array(point)), array(axis)));
+            let along = corners(extent).map(|corner| (corner - point).dot(axis));
             let low = along.iter().copied().fold(f64::INFINITY, f64::min);
             let high = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let ends = [low, high].map(|at| point + axis * at);
@@ -79,33 +75,23 @@ fn of_shape(shape: &WallShape, extent: Extent) -> Vec<Vec<Point>> {
         }
         WallShape::Cone { ends, radii } => round(*ends, *radii),
         WallShape::Mesh { triangles } => {
-            let corners = |triangle: &[Vec3; 3]| triangle.iter().map(array).collect();
-            triangles.iter().map(corners).collect()
+            triangles.iter().map(|triangle| triangle.to_vec()).collect()
         }
     }
 }
 
-fn array(vector: &Vec3) -> Point {
-    [vector.x, vector.y, vector.z]
-}
-
 fn corners([low, high]: Extent) -> [Point; 8] {
     std::array::from_fn(|corner| {
-        std::array::from_fn(|axis| {
-            if corner >> axis & 1 == 1 {
-                high[axis]
-            } else {
-                low[axis]
-            }
-        })
+        let end = |axis: usize| [low, high][corner >> axis & 1][axis];
+        Point::new(end(0), end(1), end(2))
     })
 }
 
 /// The part of a plane inside a box; `None` where it does not cross it or is one of its sides.
 fn across(extent: Extent, point: Point, normal: Point) -> Option<Vec<Point>> {
     let corners = corners(extent);
-    let heights = corners.map(|corner| dot(minus(corner, point), normal));
-    let size = dot(minus(extent[1], extent[0]), minus(extent[1], extent[0])).sqrt();
+    let heights = corners.map(|corner| (corner - point).dot(&normal));
+    let size = (extent[1] - extent[0]).norm();
     let mut spots = Vec::new();
     for a in 0..8_usize {
         for axis in 0..3 {
@@ -114,23 +100,19 @@ fn across(extent: Extent, point: Point, normal: Point) -> Option<Vec<Point>> {
                 continue;
             }
             let share = heights[a] / (heights[a] - heights[b]);
-            spots.push(std::array::from_fn(|k| {
-                corners[a][k] + share * (corners[b][k] - corners[a][k])
-            }));
+            spots.push(corners[a].lerp(&corners[b], share));
         }
     }
     let outside = |sign: f64| heights.iter().all(|height| sign * height >= -1e-9 * size);
     if spots.len() < 3 || outside(1.0) || outside(-1.0) {
         return None;
     }
-    let count = spots.len() as f64;
-    let middle: Point =
-        std::array::from_fn(|k| spots.iter().map(|spot: &Point| spot[k]).sum::<f64>() / count);
-    let right = minus(spots[0], middle);
-    let up = cross(normal, right);
+    let middle = spots.iter().sum::<Point>() / spots.len() as f64;
+    let right = spots[0] - middle;
+    let up = normal.cross(&right);
     let angle = |spot: &Point| {
-        let from = minus(*spot, middle);
-        dot(from, up).atan2(dot(from, right))
+        let from = spot - middle;
+        from.dot(&up).atan2(from.dot(&right))
     };
     spots.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
     Some(spots)
@@ -148,7 +130,7 @@ fn round(ends: [Vec3; 2], radii: [f64; 2]) -> Vec<Vec<Point>> {
     let up = axis.normalize().cross(&right);
     let spot = |end: usize, side: usize| {
         let angle = TAU * (side % SIDES) as f64 / SIDES as f64;
-        array(&(ends[end] + (right * angle.cos() + up * angle.sin()) * radii[end]))
+        ends[end] + (right * angle.cos() + up * angle.sin()) * radii[end]
     };
     (0..SIDES)
         .map(|side| {
@@ -166,17 +148,17 @@ fn round(ends: [Vec3; 2], radii: [f64; 2]) -> Vec<Vec<Point>> {
 mod tests {
     use super::*;
 
-    const CUBE: Extent = [[0.0; 3], [1.0; 3]];
+    const CUBE: Extent = [Point::new(0.0, 0.0, 0.0), Point::new(1.0, 1.0, 1.0)];
 
     #[test]
     fn a_plane_through_a_box_is_cut_at_its_sides_and_a_side_itself_is_left_out() {
-        let middle = across(CUBE, [0.0, 0.0, 0.5], [0.0, 0.0, 1.0]).unwrap();
+        let middle = across(CUBE, Point::new(0.0, 0.0, 0.5), Point::z()).unwrap();
         assert_eq!(middle.len(), 4);
         assert!(middle.iter().all(|spot| spot[2] == 0.5));
-        let slant = across(CUBE, [0.5; 3], [1.0; 3]).unwrap();
+        let slant = across(CUBE, Point::repeat(0.5), Point::repeat(1.0)).unwrap();
         assert_eq!(slant.len(), 6);
-        assert_eq!(across(CUBE, [0.0; 3], [0.0, 0.0, 1.0]), None);
-        assert_eq!(across(CUBE, [0.0, 0.0, 3.0], [0.0, 0.0, 1.0]), None);
+        assert_eq!(across(CUBE, Point::zeros(), Point::z()), None);
+        assert_eq!(across(CUBE, Point::new(0.0, 0.0, 3.0), Point::z()), None);
     }
 
     #[test]

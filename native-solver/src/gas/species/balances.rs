@@ -6,6 +6,7 @@ use calcine_coupler::part::Balance;
 
 use super::SpeciesEquations;
 use crate::gas::attempt::AttemptFrame;
+use crate::gas::boundary::of_all;
 use crate::gas::state::GasState;
 use crate::numerics::parallel::{fill, sums, update};
 
@@ -27,18 +28,11 @@ impl SpeciesEquations {
 
     /// Notes the flows through the boundary.
     pub(super) fn record(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
-        let internal = frame.grid.internal;
-        for k in 0..frame.species() {
-            self.boundary[k] = sums(frame.grid.faces.len() - internal, |face| {
-                let inflow = self.inflow(frame, now, k, internal + face);
-                [inflow, inflow.abs()]
-            });
-        }
-        let own = |k| {
-            let boundary = frame.boundary;
-            boundary.by_patch(|face| self.inflow(frame, now, k, face))
+        let of = |k| {
+            let inflow = |face| self.inflow(frame, now, k, face);
+            frame.boundary.flows_by_patch(inflow)
         };
-        self.patches = (0..frame.species()).map(own).collect();
+        self.patches = (0..frame.species()).map(of).collect();
     }
 
     /// Gives each cell what flows, particles and reactions brought it beyond m Y, so that the content of a cell is what came and
@@ -82,7 +76,7 @@ impl SpeciesEquations {
                 let stored = now.content(cell, place) - frame.old.content(cell, place);
                 [stored, stored.abs()]
             });
-            let [inflow, magnitude] = self.boundary[k];
+            let [inflow, magnitude] = of_all(&self.patches[k]);
             let given = &frame.exchange.species;
             let exchanged = match given.is_none() {
                 true => 0.0,
