@@ -288,6 +288,7 @@ impl Momentum {
                 &mut self.component,
                 target,
             );
+            tracing::debug!("velocity {axis}: {} linear iterations", solved.iterations);
             if solved.iterations > 0 {
                 let component = &self.component;
                 let put = |cell: usize, u: &mut Vec3| u[axis] = component[cell];

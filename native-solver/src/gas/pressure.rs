@@ -326,6 +326,7 @@ impl Pressure {
             &mut now.pressure,
             target,
         );
+        tracing::debug!("pressure: {} linear iterations", solved.iterations);
         self.update_flux(frame, now);
         self.corrections += 1;
         self.update_slopes(&now.flux);
