@@ -1,10 +1,12 @@
 //! Flow, heat and balances of calcineGasFoam against exact solutions (verification).
 
+use calcine_coupler::conformance::manufactured::prisms::prism_box;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{Balance, Bed, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
 use calcine_coupler::setup::{GasPatch, Schedule, WallHeat, WallVelocity};
 use calcine_coupler::time::{Clocks, Ticks};
 
@@ -183,6 +185,69 @@ fn air_passes_a_duct_that_leans_by_up_to_65_degrees() {
         );
     }
 }
+
+/// The prisms of `native-solver/tests/stretched.rs`: the fastest cell is that of the native gas.
+#[test]
+fn a_viscous_fluid_passes_thin_prisms_as_natively() {
+    let folder = tempfile::tempdir().unwrap();
+    let thin = prism_box(
+        &BoxSpec {
+            origin: Vec3::zeros(),
+            size: Vec3::new(2.0, 1.0, 0.1),
+            cells: [12, 6, 6],
+            patches: ["bottom", "top", "side", "side", "side", "side"].map(str::to_owned),
+        },
+        |point| point,
+    )
+    .unwrap();
+    let cells = thin.cells();
+    let mut viscous = setup();
+    viscous.velocity = Vec3::new(1.0, 0.0, 0.0);
+    viscous.properties = GasModel::Constant(ConstantGas {
+        density: 1.0,
+        heat_capacity: 1000.0,
+        viscosity: 0.1,
+        conductivity: 1.0,
+    });
+    viscous.controls.outer_iterations = 60;
+    viscous.controls.outer_tolerance = 1e-8;
+    for (name, patch) in &mut viscous.patches {
+        match name.as_str() {
+            "bottom" => {
+                *patch = GasPatch::inlet(Schedule::constant(1.0), Schedule::constant(TEMPERATURE));
+            }
+            "side" => {
+                *patch = GasPatch::Wall {
+                    velocity: WallVelocity::NoSlip,
+                    heat: WallHeat::Adiabatic,
+                };
+            }
+            _ => {}
+        }
+    }
+    let mut duct = Duct::launch_on(thin, &viscous, folder.path());
+    let span = Ticks::from_seconds(0.1).unwrap();
+    duct.window.span = Clocks {
+        motion: span,
+        process: span,
+    };
+    let empty = Bed {
+        void_fraction: vec![1.0; cells],
+    };
+    for window in 0..10 {
+        let done = duct.advance(1, &empty, &exchange_of_nothing(cells));
+        assert!(done.converged, "window {window}: {done:?}");
+    }
+    let speeds = duct.gas.fields().velocity.iter().map(|u| u.norm());
+    let fastest = speeds.fold(0.0, f64::max);
+    assert!(
+        (fastest / FASTEST_OF_THIN_PRISMS - 1.0).abs() < 1e-5,
+        "{fastest}"
+    );
+}
+
+/// In m/s (`native-solver/tests/stretched.rs`).
+const FASTEST_OF_THIN_PRISMS: f64 = 1.565_282_4;
 
 fn leaning_box() -> Mesh {
     box_mesh(&BoxSpec {

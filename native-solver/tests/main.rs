@@ -38,6 +38,7 @@ mod species;
 mod step_errors;
 mod stirred;
 mod stirred_cells;
+mod stretched;
 mod time_order;
 mod turning_walls;
 mod verification_bed_eddies;

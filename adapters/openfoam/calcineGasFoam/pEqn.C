@@ -123,8 +123,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, bool first,
     const labelUList& owner = mesh_.faceOwner();
     const labelUList& neighbour = mesh_.faceNeighbour();
     updateForce();
-    // On oblique lines once, as gradients are fed back.
-    if (first || !oblique_)
+    if (first || !oblique_ || follows_)
     {
         updateTransport(density);
     }

@@ -61,7 +61,7 @@ void Foam::calcine::gas::holdFriction()
               ? max(momentum_->boundaryCoeffs()[patchi][i].x(), scalar(0))
               : momentum_->internalCoeffs()[patchi][i].x();
             friction[celli] += w;
-            if (!U.coupled())
+            if (!U.coupled() && !follows_)
             {
                 const scalar area = mag(mesh_.faceAreas()[facei]);
                 const scalar between = w*area*ownerDistance_[facei]/volume[celli];

@@ -19,7 +19,10 @@ impl CoupledRun {
     pub(super) fn told_with_circumstances(&self, error: RunError, window: &Window) -> RunError {
         match error {
             RunError::Part(part)
-                if matches!(part.kind, FailureKind::Diverged | FailureKind::NotFinite) =>
+                if matches!(
+                    part.kind,
+                    FailureKind::Diverged | FailureKind::NotFinite | FailureKind::NotConverged
+                ) =>
             {
                 let lines = [
                     self.courant(window),

@@ -31,6 +31,7 @@ mod repeat;
 mod resize;
 mod span;
 mod step_limit;
+mod unsolved;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -55,6 +56,7 @@ use length_stage::LengthStage;
 use meter::{Meter, Stage};
 use particles::{MotionInputs, MotionStage};
 use repeat::{RepeatableGas, WindowCut};
+use unsolved::UnsolvedWindows;
 
 use crate::bodies::HeatBodies;
 use crate::closures::Closures;
@@ -132,6 +134,8 @@ pub struct CoupledRun {
     cut: WindowCut,
     /// Errors of the steps, and how long windows are by them.
     length: LengthStage,
+    /// Windows in a row whose gas was not solved.
+    unsolved: UnsolvedWindows,
     /// True where a run resumed after particles had moved: what they meet is found before the next window.
     neighbours_due: bool,
     /// What was set while the run goes on, each condition once.
@@ -208,6 +212,7 @@ impl CoupledRun {
             windows: 0,
             cut: WindowCut::default(),
             length,
+            unsolved: UnsolvedWindows::default(),
             neighbours_due: false,
             controls: Vec::new(),
             findings: Vec::new(),
@@ -362,6 +367,9 @@ impl CoupledRun {
         }
         if self.is_too_long(window) {
             return Ok(Advanced::TooLong);
+        }
+        if let Err(error) = self.check_solved(window) {
+            return Err(self.told_with_circumstances(error.into(), window));
         }
         self.move_particles(supervisor, window)?;
         self.close_ledger(window);

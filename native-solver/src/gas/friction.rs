@@ -14,6 +14,11 @@
 //! Where u = u* the pull is w (u − u_w): what the outer loop converges to is the same. Without friction, w ≪ i, corrections are those
 //! of PISO (Issa 1986, doi 10.1016/0021-9991(86)90099-9); without inertia, w_δ = 0, two of them make the pressure's
 //! preconditioner of Cahouet and Chabard 1988, doi 10.1002/fld.1650080802.
+//!
+//! A sequence of more corrections ([`HELD`]) sums the series of which two are the first terms: it takes friction in full, and with it what transport
+//! does at faces of the velocity that each correction found ([`super::transport`]). On thin layers of prisms it must: there a velocity that differs
+//! between the two prisms of a hexahedron is damped by friction between neighbours alone, far less than the diagonal a, and with a pull that is
+//! not that of its own velocity the next predictor makes more of it than the corrections took away.
 
 use calcine_coupler::physics::Vec3;
 
@@ -21,6 +26,9 @@ use super::attempt::AttemptFrame;
 use super::momentum::Momentum;
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::parallel::fill;
+
+/// With more corrections than this in an outer iteration nothing of the friction at walls is held.
+pub const HELD: u32 = 2;
 
 /// What the corrections of an outer iteration hold of the friction at walls.
 #[derive(Debug, Default)]
@@ -62,6 +70,11 @@ impl WallFriction {
             let inertia = diagonal - momentum.transport(frame, cell);
             held(friction, between, inertia, diagonal)
         });
+    }
+
+    /// Holds nothing.
+    pub fn release(&mut self) {
+        self.held.clear();
     }
 
     /// What the gas of a cell gets back at a velocity in N: the pull (w − w') (u − u*) of walls on its slip along them.

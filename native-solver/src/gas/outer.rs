@@ -215,7 +215,8 @@ impl Equations {
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, linear.terms, now);
         self.watch.lap(&mut self.phases.momentum);
-        self.pressure.assemble(frame, material, &self.momentum, now);
+        self.pressure
+            .assemble(frame, material, &self.momentum, corrections, now);
         for _ in 0..corrections {
             iterations +=
                 self.pressure

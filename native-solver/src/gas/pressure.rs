@@ -124,6 +124,8 @@ pub struct Pressure {
     slopes: Vec<[f64; 2]>,
     /// Corrections since the matrix was assembled.
     corrections: u32,
+    /// True where a sequence of corrections is to follow friction and what transport does at faces.
+    follows: bool,
     /// Memory for the next.
     scratch: Vec<Vec3>,
 }
@@ -157,6 +159,7 @@ impl Pressure {
             along: Vec::new(),
             slopes: vec![[0.0; 2]; faces],
             corrections: 0,
+            follows: false,
             scratch: Vec::new(),
         }
     }
@@ -211,18 +214,23 @@ impl Pressure {
         }
     }
 
-    /// Assembles the matrix for the momentum equation and properties at hand.
+    /// Assembles the matrix for the momentum equation and properties at hand, for so many corrections.
     pub fn assemble(
         &mut self,
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
         momentum: &Momentum,
+        corrections: u32,
         now: &GasState,
     ) {
         self.transport
             .update(frame, material, momentum, &self.recovery, now);
         self.corrections = 0;
-        self.friction.begin(frame, momentum, &now.velocity);
+        self.follows = corrections > friction::HELD;
+        match self.follows {
+            true => self.friction.release(),
+            false => self.friction.begin(frame, momentum, &now.velocity),
+        }
         let grid = frame.grid;
         fill(&mut self.mobility, |cell| {
             let pores = frame.void_fraction[cell];
@@ -289,7 +297,7 @@ impl Pressure {
         now: &mut GasState,
     ) -> u32 {
         let grid = frame.grid;
-        if grid.orthogonal && self.corrections > 0 {
+        if (grid.orthogonal || self.follows) && self.corrections > 0 {
             self.transport
                 .update(frame, material, momentum, &self.recovery, now);
         }

@@ -49,11 +49,11 @@ pub fn shaped_box(
         }
         CellShape::Tetrahedra(_) => {
             let faces = faces_of(&tetrahedra(counts), &topology.points);
-            Mesh::new(joined(topology.points, faces, displaced))
+            Mesh::new(joined(topology.points, faces, &PATCHES, displaced))
         }
         CellShape::Polyhedra(_) => {
             let (points, faces) = dual(&tetrahedra(counts), &topology.points);
-            Mesh::new(joined(points, faces, displaced))
+            Mesh::new(joined(points, faces, &PATCHES, displaced))
         }
     }
 }
@@ -92,13 +92,13 @@ fn sides(point: &Vec3) -> u32 {
 }
 
 /// A face: its cells, the patch of one at the boundary, and its points in any sense.
-struct RawFace {
-    owner: u32,
-    neighbour: Option<u32>,
-    patch: usize,
-    points: Vec<u32>,
+pub(super) struct RawFace {
+    pub owner: u32,
+    pub neighbour: Option<u32>,
+    pub patch: usize,
+    pub points: Vec<u32>,
     /// A vector that its normal must follow.
-    out: Vec3,
+    pub out: Vec3,
 }
 
 fn patch_of(side: u32) -> usize {
@@ -289,10 +289,11 @@ fn dual(cells: &[[u32; 4]], points: &[Vec3]) -> (Vec<Vec3>, Vec<RawFace>) {
     (all, faces)
 }
 
-/// The topology of faces, in upper-triangular order, their points displaced.
-fn joined(
+/// The topology of faces, in upper-triangular order, with patches of these names, their points displaced.
+pub(super) fn joined(
     points: Vec<Vec3>,
     mut faces: Vec<RawFace>,
+    patches: &[&str],
     displaced: impl Fn(Vec3) -> Vec3,
 ) -> Topology {
     for face in &mut faces {
@@ -328,7 +329,7 @@ fn joined(
         topology.owner.push(face.owner);
         topology.neighbour.extend(face.neighbour);
     }
-    for (patch, name) in PATCHES.into_iter().enumerate() {
+    for (patch, &name) in patches.iter().enumerate() {
         let start = faces
             .iter()
             .position(|face| face.neighbour.is_none() && face.patch == patch);

@@ -5,6 +5,7 @@
 //! sticks to them, two sides are planes of symmetry.
 
 pub mod meshes;
+pub mod prisms;
 pub mod solution;
 
 use std::sync::Arc;
@@ -129,8 +130,8 @@ impl ManufacturedCase {
                 pressure_corrections: 2,
                 time_scheme: Default::default(),
                 most_pressure_corrections: 16,
-                outer_tolerance: 1e-8,
-                linear_tolerance: Some(1e-11),
+                outer_tolerance: 1e-9,
+                linear_tolerance: Some(1e-12),
             },
         }
     }

@@ -1,0 +1,115 @@
+//! The gas in thin layers of prisms, in windows of many diffusion times of a cell.
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use calcine_coupler::conformance::manufactured::prisms::prism_box;
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::part::Gas;
+use calcine_coupler::physics::Vec3;
+
+use crate::common::*;
+
+/// A duct of 2 × 1 m and a height, of 12 × 6 × 6 hexahedra, and what becomes of the box that they make.
+fn duct_of(height: f64, cut: impl Fn(&BoxSpec) -> Mesh) -> Arc<Mesh> {
+    let patches = ["in", "out", "wall", "wall", "wall", "wall"];
+    Arc::new(cut(&BoxSpec {
+        origin: Vec3::zeros(),
+        size: Vec3::new(2.0, 1.0, height),
+        cells: [12, 6, 6],
+        patches: patches.map(str::to_owned),
+    }))
+}
+
+/// Pressure gradient in Pa/m between 1 and 1.6 m behind the inlet after a second, by the default controls.
+fn gradient(mesh: &Arc<Mesh>, viscosity: f64, window: f64) -> f64 {
+    let mut setup = setup(&[
+        ("in", inlet(1.0, 300.0)),
+        ("out", outlet()),
+        ("wall", no_slip()),
+    ]);
+    setup.properties = fluid(1.0, 1000.0, viscosity, 1.0);
+    setup.velocity = Vec3::new(1.0, 0.0, 0.0);
+    setup.controls.outer_iterations = 20;
+    setup.controls.outer_tolerance = 1e-6;
+    setup.controls.linear_tolerance = None;
+    let mut driver = Driver::new(mesh, &setup);
+    for number in 0..(1.0 / window).round() as usize {
+        let done = driver.window(window, 1.0);
+        // The first starts with the same velocity beside walls as elsewhere.
+        assert!(
+            done.converged || number == 0,
+            "{viscosity} Pa s, {window} s, window {number}: {done:?}"
+        );
+    }
+    let pressure = driver.gas.fields().pressure;
+    // By least squares.
+    let centres = mesh.cell_centre().iter().zip(pressure);
+    let inside = centres.filter(|(centre, _)| centre.x > 1.0 && centre.x < 1.6);
+    let (mut count, mut sums) = (0.0, [0.0; 4]);
+    for (centre, &value) in inside {
+        let x = centre.x - 1.3;
+        count += 1.0;
+        for (sum, part) in sums.iter_mut().zip([x, value, x * x, x * value]) {
+            *sum += part;
+        }
+    }
+    let [x, p, xx, xp] = sums.map(|sum| sum / count);
+    (xp - x * p) / (xx - x * x)
+}
+
+/// Layers as thick as the prisms are wide, and up to 30 times thinner; ν Δt/Δz² from 7e-4 to 4e4. Where viscosity rules the pressure gradient is that of
+/// plane ducts between side walls, 12 μ u/(h² (1 − 0.630 h/w)), off by what six layers give, on prisms as on hexahedra.
+#[test]
+fn thin_prisms_run_by_the_default_controls() {
+    for height in [1.0, 0.3, 0.1, 0.03] {
+        let prisms = duct_of(height, |spec| prism_box(spec, |point| point).unwrap());
+        let hexahedra = duct_of(height, |spec| box_mesh(spec).unwrap());
+        for viscosity in [1e-3, 0.1, 10.0] {
+            for window in [0.02, 0.1] {
+                let [found, other] =
+                    [&prisms, &hexahedra].map(|mesh| gradient(mesh, viscosity, window));
+                let what = format!("{height} m, {viscosity} Pa s, {window} s");
+                assert!(
+                    (found / other - 1.0).abs() < 0.04,
+                    "{what}: {found}, {other} Pa/m"
+                );
+                if viscosity >= 0.1 && height <= 0.1 {
+                    let exact = -12.0 * viscosity / (height * height * (1.0 - 0.630 * height));
+                    assert!(
+                        (found / exact - 1.0).abs() < 0.12,
+                        "{what}: {found}, {exact} Pa/m"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The fastest cell in m/s after a second in layers ten times thinner than wide, viscosity 0.1 Pa s; `adapters/tests/openfoam_flow.rs` has it within 1e-5.
+#[test]
+fn the_fastest_cell_between_thin_prisms_is_that_of_other_windows() {
+    let mesh = duct_of(0.1, |spec| prism_box(spec, |point| point).unwrap());
+    for window in [0.02_f64, 0.1] {
+        let mut setup = setup(&[
+            ("in", inlet(1.0, 300.0)),
+            ("out", outlet()),
+            ("wall", no_slip()),
+        ]);
+        setup.properties = fluid(1.0, 1000.0, 0.1, 1.0);
+        setup.velocity = Vec3::new(1.0, 0.0, 0.0);
+        setup.controls.outer_tolerance = 1e-8;
+        let mut driver = Driver::new(&mesh, &setup);
+        for number in 0..(1.0 / window).round() as usize {
+            let done = driver.window(window, 1.0);
+            assert!(done.converged, "{window} s, window {number}: {done:?}");
+        }
+        let speeds = driver.gas.fields().velocity.iter().map(|u| u.norm());
+        let fastest = speeds.fold(0.0, f64::max);
+        assert!(
+            (fastest / 1.565_282_4 - 1.0).abs() < 1e-5,
+            "{window} s: {fastest}"
+        );
+    }
+}
