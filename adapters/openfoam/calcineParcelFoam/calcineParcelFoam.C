@@ -16,9 +16,6 @@
 #include "SolverPerformance.H"
 #include "Time.H"
 
-#include <algorithm>
-#include <limits>
-
 namespace
 {
 
@@ -107,9 +104,8 @@ void send
     {
         link.put("drag_impulse", drag);
     }
-    // What walls and the stress give is not counted.
-    const scalar uncounted = std::numeric_limits<scalar>::quiet_NaN();
-    link.put("support", scalarList{span, uncounted, uncounted, uncounted});
+    const vector support = span > 0 ? parcels.push().support : vector::zero;
+    link.put("support", scalarList{span, support.x(), support.y(), support.z()});
     link.send();
 }
 

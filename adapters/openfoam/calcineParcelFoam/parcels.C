@@ -2,8 +2,9 @@
 #include "link.H"
 #include "integrationScheme.H"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <sstream>
 
 namespace
@@ -42,25 +43,42 @@ Foam::calcine::parcelCloud::parcelCloud
 
 void Foam::calcine::parcelCloud::evolve()
 {
-    pushed_.correcting = false;
     if (this->solution().canEvolve())
     {
         parcelType::trackingData td(*this);
         this->solve(*this, td);
     }
+    enter(pushed::stage::flight);
+}
+
+
+void Foam::calcine::parcelCloud::enter(pushed::stage next)
+{
+    if (pushed_.at == next)
+    {
+        return;
+    }
+    if (pushed_.at != pushed::stage::flight)
+    {
+        for (const parcelType& p : *this)
+        {
+            pushed_.support += p.nParticle()*p.mass()*p.UCorrect();
+        }
+    }
+    pushed_.at = next;
 }
 
 
 Foam::DampingModel<Foam::calcine::parcelCloud::MPPICCloudType>& Foam::calcine::parcelCloud::dampingModel()
 {
-    pushed_.correcting = true;
+    enter(pushed::stage::damping);
     return basicKinematicMPPICCloud::dampingModel();
 }
 
 
 Foam::PackingModel<Foam::calcine::parcelCloud::MPPICCloudType>& Foam::calcine::parcelCloud::packingModel()
 {
-    pushed_.correcting = true;
+    enter(pushed::stage::packing);
     return basicKinematicMPPICCloud::packingModel();
 }
 
@@ -216,6 +234,7 @@ Foam::label Foam::calcine::parcels::stepsLeft(scalar left, scalar span, label do
 void Foam::calcine::parcels::advance(scalar span)
 {
     pushed_.dragImpulse = Zero;
+    pushed_.support = Zero;
     scalar left = span;
     for (label done = 0; left > 0; ++done)
     {

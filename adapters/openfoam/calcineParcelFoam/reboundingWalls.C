@@ -47,7 +47,7 @@ bool Foam::calcine::reboundingWalls::correct
     keepParticle = true;
     const vector normal = p.normal();
     vector& velocity = p.U();
-    if (pushed_.correcting)
+    if (pushed_.at != pushed::stage::flight)
     {
         velocity -= max(velocity & normal, scalar(0))*normal;
         return true;
@@ -64,10 +64,12 @@ bool Foam::calcine::reboundingWalls::correct
     const vector along = slip - towards*normal;
     const scalar speed = mag(along);
     const scalar lost = min(friction_[pp.index()][p.typeId()]*change, speed);
-    velocity -= change*normal;
+    vector lostVelocity = change*normal;
     if (speed > 0)
     {
-        velocity -= (lost/speed)*along;
+        lostVelocity += (lost/speed)*along;
     }
+    velocity -= lostVelocity;
+    pushed_.support -= p.nParticle()*p.mass()*lostVelocity;
     return true;
 }

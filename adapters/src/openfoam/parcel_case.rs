@@ -24,7 +24,7 @@ const SCHEMES: &str = "ddtSchemes { default Euler; }\ngradSchemes { default Gaus
                        laplacianSchemes { default Gauss linear corrected; }\ninterpolationSchemes { default linear; }\n\
                        snGradSchemes { default corrected; }\n";
 /// `system/fvSolution`: the solid fraction of the implicit packing is solved to round-off.
-const SOLUTION: &str = "solvers\n{\n    \"parcels:alpha\"\n    {\n        solver          PBiCGStab;\n        preconditioner  DILU;\n        \
+const SOLUTION: &str = "solvers\n{\n    \"parcels:alpha\"\n    {\n        solver          PCG;\n        preconditioner  DIC;\n        \
                         tolerance       1e-14;\n        relTol          0;\n    }\n}\n";
 
 /// What the case is made from.
@@ -219,12 +219,13 @@ fn cloud(motion: &ParcelMotion) -> String {
              surfaceFilmModel none;\n    stochasticCollisionModel none;\n    \
              patchInteractionModel calcineWalls;\n    calcineWallsCoeffs\n    {{\n        patches\n        {{\n{}        }}\n    }}\n\n    \
              packingModel    {};\n\n    dampingModel    {};\n    relaxationCoeffs {{ {} }}\n\n    \
-             isotropyModel   {};\n    stochasticCoeffs {{ {} }}\n}}\n\ncloudFunctions {{}}\n",
+             isotropyModel   {};\n    calcineDrawnCoeffs {{ seed \"{}\"; {} }}\n}}\n\ncloudFunctions {{}}\n",
             motion.walls.iter().map(impacts).collect::<String>(),
             packing(&motion.packing),
             chosen(motion.collisions.damping, "relaxation"),
             scale("nonEquilibrium"),
-            chosen(motion.collisions.isotropy, "stochastic"),
+            chosen(motion.collisions.isotropy, "calcineDrawn"),
+            motion.collisions.seed,
             scale("isotropic"),
         )
 }
