@@ -32,7 +32,7 @@ const DENSITY: f64 = 2500.0;
 const STRESS: HarrisCrighton = HarrisCrighton {
     pressure: 10.0,
     exponent: 2.0,
-    floor: 1e-7,
+    floor: 1e-2,
     close_packing: 0.6,
 };
 
@@ -436,9 +436,19 @@ fn what_the_cloud_cannot_do_is_refused_by_name() {
     };
     let error = refused(&|rules| rules.resistance = Some(resistance.clone()), within);
     assert!(error.to_string().contains("motion.parcels.resistance"));
-    let error = refused(&|rules| rules.most_steps = 3, within);
-    assert_eq!(error.kind, FailureKind::InvalidInput);
-    assert!(error.to_string().contains("most_steps"), "{error}");
+    let stiff = HarrisCrighton {
+        floor: 1e-7,
+        ..STRESS
+    };
+    let error = refused(
+        &|rules| rules.packing = ParcelPacking::Implicit(stiff),
+        within,
+    );
+    assert_eq!(error.kind, FailureKind::Refused);
+    assert!(
+        error.to_string().contains("motion.parcels.floor"),
+        "{error}"
+    );
     let error = refused(&|_| {}, Vec3::repeat(0.2));
     assert!(
         error

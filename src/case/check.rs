@@ -337,6 +337,10 @@ fn honoured(text: &mut String, case: &Case, refusals: Refusals<'_>) {
         let note = match (name, &refused) {
             (_, Some(refused)) => refused,
             ("OpenFOAM", _) => foam.as_str(),
+            (FOAM_PARCELS, _) => {
+                "every key but `motion.parcels.most_steps`: a window is one step of the cloud, whose tracks have parts of the Courant \
+                 number `courant` at most"
+            }
             ("native gas", _) if case.openfoam.start.is_some() => {
                 "not its start: `openfoam.start` is the start of an OpenFOAM gas alone"
             }

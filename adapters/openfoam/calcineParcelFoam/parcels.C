@@ -1,9 +1,7 @@
 #include "parcels.H"
 #include "link.H"
-#include "integrationScheme.H"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <sstream>
 
@@ -91,8 +89,6 @@ Foam::calcine::parcels::parcels(fvMesh& mesh, const IOdictionary& properties, co
     U_(named("U", mesh, IOobject::MUST_READ), mesh),
     rho_(named("rho", mesh, IOobject::NO_READ), mesh, dimensionedScalar("rho", dimDensity, 0)),
     mu_(named("mu", mesh, IOobject::NO_READ), mesh, dimensionedScalar("mu", dimPressure*dimTime, 1)),
-    courant_(properties.get<scalar>("courant")),
-    mostSteps_(properties.get<label>("mostSteps")),
     pushed_(mesh, properties.get<vector>("gravity"))
 {
     fill(start);
@@ -192,65 +188,19 @@ Foam::calcine::parcelRows Foam::calcine::parcels::rows() const
 }
 
 
-Foam::label Foam::calcine::parcels::stepsLeft(scalar left, scalar span, label done) const
-{
-    const cellList& cells = mesh_.cells();
-    const integrationScheme& scheme = cloud_->UIntegrator();
-    scalar fastest = 0, speed = 0;
-    for (const parcelCloud::parcelType& p : *cloud_)
-    {
-        const label row = p.origId(), celli = p.cell();
-        const scalar mass = p.mass(), coefficient = pushed_.coefficient[row];
-        const vector acceleration =
-            (pushed_.force[row] + coefficient*pushed_.gas[row])/mass + pushed_.gravity;
-        const vector last = p.U() + scheme.delta(p.U(), left, acceleration, coefficient/mass);
-        scalar now = 0, then = 0;
-        for (const label facei : cells[celli])
-        {
-            const vector area = mesh_.faceOwner()[facei] == celli ? mesh_.faceAreas()[facei] : -mesh_.faceAreas()[facei];
-            now += max(p.U() & area, scalar(0));
-            then += max(last & area, scalar(0));
-        }
-        const scalar rate = max(now, then)/mesh_.cellVolumes()[celli];
-        if (!(rate <= fastest))
-        {
-            fastest = rate;
-            speed = mag(p.U());
-        }
-    }
-    const scalar steps = max(scalar(1), std::ceil(left*fastest/courant_));
-    if (!(done + steps <= mostSteps_))
-    {
-        std::ostringstream text;
-        text<< "a parcel at " << speed << " m/s needs " << done + steps << " steps in a window of " << span
-            << " s, so that its Courant number stays below " << courant_ << "; `motion.parcels.most_steps` is "
-            << mostSteps_ << ": shorten `time.motion_window`, or look for what makes parcels so fast";
-        refuse(CALCINE_FAILURE_INPUT, text.str());
-    }
-    return label(steps);
-}
-
-
 void Foam::calcine::parcels::advance(scalar span)
 {
     pushed_.dragImpulse = Zero;
     pushed_.support = Zero;
-    scalar left = span;
-    for (label done = 0; left > 0; ++done)
+    time_.setDeltaT(span, false);
+    ++time_;
+    cloud_->evolve();
+    ++pushed_.step;
+    if (cloud_->size() != ids_.size())
     {
-        const label steps = stepsLeft(left, span, done);
-        const scalar step = steps == 1 ? left : left/steps;
-        time_.setDeltaT(step, false);
-        ++time_;
-        cloud_->evolve();
-        ++pushed_.step;
-        left = steps == 1 ? 0 : left - step;
-        if (cloud_->size() != ids_.size())
-        {
-            std::ostringstream text;
-            text<< cloud_->size() << " of " << ids_.size() << " parcels are left";
-            refuse(CALCINE_FAILURE_LOST_PARTICLES, text.str());
-        }
+        std::ostringstream text;
+        text<< cloud_->size() << " of " << ids_.size() << " parcels are left";
+        refuse(CALCINE_FAILURE_LOST_PARTICLES, text.str());
     }
 }
 

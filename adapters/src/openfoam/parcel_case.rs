@@ -19,6 +19,9 @@ use super::parcels::{NAME, PROGRAM};
 
 /// Least solid fraction, and density in kg/m³, that the implicit packing takes for a cell: those of OpenFOAM's own cases.
 const LEAST: [f64; 2] = [1e-4, 1.0];
+/// `motion.parcels.floor` of the implicit packing at least, that of OpenFOAM's own cases: a smaller one makes its corrections of
+/// velocity swing about close packing, and a bed boils.
+const LEAST_FLOOR: f64 = 1e-2;
 /// `system/fvSchemes`, for the implicit packing.
 const SCHEMES: &str = "ddtSchemes { default Euler; }\ngradSchemes { default Gauss linear; }\ndivSchemes { default none; }\n\
                        laplacianSchemes { default Gauss linear corrected; }\ninterpolationSchemes { default linear; }\n\
@@ -69,6 +72,16 @@ impl ParcelCase<'_> {
                 "OpenFOAM's cloud has no resistance against a wall: leave `motion.parcels.resistance` out, or move the parcels \
                  natively (`--particles native`)",
             );
+        }
+        if let ParcelPacking::Implicit(law) = &motion.packing
+            && law.floor < LEAST_FLOOR
+        {
+            let message = format!(
+                "`motion.parcels.floor` is {:e}, and the implicit packing of OpenFOAM's cloud throws parcels about close packing with less \
+                 than {LEAST_FLOOR:e}: write floor = {LEAST_FLOOR} (native parcels stay below close packing with any)",
+                law.floor
+            );
+            return refuse(&message);
         }
         if self.ranks > 1 {
             return refuse(
@@ -124,13 +137,10 @@ impl ParcelCase<'_> {
         let _ = write!(
             text,
             "caseHash        \"{}\";\n\
-             // Gravity in m/s^2; largest Courant number of a parcel in a step; most steps of a window.\n\
-             gravity         {};\ncourant         {:e};\nmostSteps       {};\n\n\
+             // Gravity in m/s^2.\ngravity         {};\n\n\
              // Columns of the link to Calcine.\ncatalogue\n(\n",
             self.case_hash,
-            vector(motion.gravity),
-            motion.courant,
-            motion.most_steps
+            vector(motion.gravity)
         );
         for column in self.catalogue().fields() {
             let _ = writeln!(text, "    \"{column}\"");
@@ -210,8 +220,7 @@ fn cloud(motion: &ParcelMotion) -> String {
     header("dictionary", "parcelsProperties")
         + &format!(
             "solution\n{{\n    active          yes;\n    coupled         yes;\n    transient       yes;\n    \
-             cellValueSourceCorrection off;\n    // Steps are such that no parcel crosses more: no further parts of a track.\n    \
-             maxCo           1;\n    \
+             cellValueSourceCorrection off;\n    maxCo           {:e};\n    \
              interpolationSchemes {{ rho cell; U cell; mu cell; }}\n    averagingMethod dual;\n    \
              integrationSchemes {{ U analytical; }}\n    sourceTerms {{ schemes {{ U semiImplicit 1; }} }}\n}}\n\n\
              constantProperties\n{{\n    rho0            1;\n}}\n\n\
@@ -220,6 +229,7 @@ fn cloud(motion: &ParcelMotion) -> String {
              patchInteractionModel calcineWalls;\n    calcineWallsCoeffs\n    {{\n        patches\n        {{\n{}        }}\n    }}\n\n    \
              packingModel    {};\n\n    dampingModel    {};\n    relaxationCoeffs {{ {} }}\n\n    \
              isotropyModel   {};\n    calcineDrawnCoeffs {{ seed \"{}\"; {} }}\n}}\n\ncloudFunctions {{}}\n",
+            motion.courant,
             motion.walls.iter().map(impacts).collect::<String>(),
             packing(&motion.packing),
             chosen(motion.collisions.damping, "relaxation"),
