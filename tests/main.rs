@@ -50,7 +50,6 @@ mod moving_reactions;
 mod moving_single;
 mod openfoam_models;
 mod parcels;
-mod parcels_agree;
 mod passages;
 mod plants;
 mod plants_kept;

@@ -28,7 +28,7 @@ const SCHEMES: &str = "ddtSchemes { default Euler; }\ngradSchemes { default Gaus
                        snGradSchemes { default corrected; }\n";
 /// `system/fvSolution`: the solid fraction of the implicit packing is solved to round-off.
 const SOLUTION: &str = "solvers\n{\n    \"parcels:alpha\"\n    {\n        solver          PCG;\n        preconditioner  DIC;\n        \
-                        tolerance       1e-14;\n        relTol          0;\n    }\n}\n";
+                        tolerance       1e-10;\n        relTol          0;\n    }\n}\n";
 
 /// What the case is made from.
 #[derive(Clone, Copy, Debug)]
