@@ -42,7 +42,7 @@ fn a_suspension_settles_to_the_same_height_natively_and_by_openfoam() {
         "particles[0].place.grid.counts=[18, 6, 60]",
         "particles[0].weight=14",
         r#"gas.patch.bottom.inlet.superficial_velocity="0.05 m/s""#,
-        "time.end=0.4 s",
+        "time.end=0.7 s",
     ];
     set.extend(SOFT);
     let found = ["native", "openfoam"].map(|particles| {
@@ -54,8 +54,8 @@ fn a_suspension_settles_to_the_same_height_natively_and_by_openfoam() {
         assert!(momentum.relative_error < 1e-12, "{momentum:?}");
         let series = Series::read(&out).unwrap();
         let heights = series.column("quantities.mean_height").to_vec();
-        // Half of the way down, and settled.
-        [heights[heights.len() / 4], heights[heights.len() - 1]]
+        // After 0.1 s, half of the way down, and settled; where the bed lands, OpenFOAM's rebounds for longer.
+        [heights[(heights.len() - 1) / 7], heights[heights.len() - 1]]
     });
     println!("{found:?}");
     for (native, foam) in found[0].iter().zip(found[1]) {
