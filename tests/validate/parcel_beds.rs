@@ -9,31 +9,36 @@ use crate::{run_with, shipped};
 
 /// Largest difference of mean heights, as a share of them.
 const HEIGHT: f64 = 0.02;
-/// Largest difference of a layer's solid fraction, as a share of the fullest layer's.
+/// Largest difference of a layer's solid fraction, as a share of the fullest layer's, in a bed that floats.
 const PROFILE: f64 = 0.05;
+/// The same in a bed that has settled: OpenFOAM's boils and has no sharp surface (docs/verification.md).
+const SETTLED: f64 = 0.3;
 /// Cells of a layer of the shipped mesh.
 const LAYER: usize = 12;
 
 /// What both particle solvers are given.
-const BOTH: [&str; 4] = [
-    "motion.parcels.pressure=10 Pa",
-    "motion.parcels.floor=1e-2",
+const BOTH: [&str; 2] = ["motion.parcels.pressure=10 Pa", "motion.parcels.floor=1e-2"];
+/// Parcels all over the column, in gas that hardly moves.
+const SETTLING: [&str; 4] = [
     "time.end=1 s",
     r#"output.means={ from = "0.5 s", to = "1 s", gas = ["void_fraction"] }"#,
-];
-/// Parcels all over the column, in gas that hardly moves.
-const SETTLING: [&str; 2] = [
     "particles[0].place.grid.counts=[18, 6, 60]",
     r#"gas.patch.bottom.inlet.superficial_velocity="0.05 m/s""#,
 ];
 
+/// The bed of the case, for longer.
+const FLOATING: [&str; 2] = [
+    "time.end=3 s",
+    r#"output.means={ from = "0.5 s", to = "3 s", gas = ["void_fraction"] }"#,
+];
+
 /// A bed as it is found.
 struct Found {
-    /// Mean height of the parcels in m, mean of 0.5 to 1 s.
+    /// Mean height of the parcels in m, mean from 0.5 s on.
     height: f64,
     /// Mean height at a tenth, three, five, eight and ten tenths of the run in m.
     falling: Vec<f64>,
-    /// Mean solid fraction of each layer from 0.5 to 1 s.
+    /// Mean solid fraction of each layer from 0.5 s on.
     profile: Vec<f64>,
 }
 
@@ -74,12 +79,13 @@ pub fn run() {
     let settling = weights.map(|(fraction, weight)| {
         let mut set: Vec<String> = SETTLING.map(str::to_owned).to_vec();
         set.push(format!("particles[0].weight={weight}"));
-        (format!("settling of {fraction}"), set)
+        (format!("settling of {fraction}"), set, SETTLED)
     });
-    let floating = ("floating at 0.4 m/s".to_owned(), Vec::new());
+    let floating = FLOATING.map(str::to_owned).to_vec();
+    let floating = ("floating at 0.4 m/s".to_owned(), floating, PROFILE);
     println!("  | bed | gas | native, mm | OpenFOAM, mm | height | layer |");
     let mut missed = Vec::new();
-    for (name, own) in settling.into_iter().chain([floating]) {
+    for (name, own, most) in settling.into_iter().chain([floating]) {
         for gas in ["native", "openfoam"] {
             let set: Vec<String> = BOTH
                 .map(str::to_owned)
@@ -105,7 +111,7 @@ pub fn run() {
                 println!("    heights on the way {:.4?} m", one.falling);
                 println!("    {:.3?}", one.profile);
             }
-            if height.abs() > HEIGHT || layer > PROFILE {
+            if height.abs() > HEIGHT || layer > most {
                 missed.push(format!("{name}, {gas} gas"));
             }
         }
