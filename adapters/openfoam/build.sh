@@ -31,13 +31,15 @@ for folder in "${folders[@]}"; do flags+=(-isystem "$folder"); done
 
 objects=$OUT_DIR/objects
 mkdir -p "$objects"
-rebuild_after=$(ls -t build.sh library/*.H calcineGasFoam/*.H calcineParcelFoam/*.H "$WIRE_INCLUDE/calcine_wire.h" | head -n 1)
 jobs=()
-for file in library/*.C calcineGasFoam/*.C calcineParcelFoam/*.C; do
-    object=$objects/$(basename "$file" .C).o
-    if [ ! "$object" -nt "$file" ] || [ ! "$object" -nt "$rebuild_after" ]; then
-        jobs+=("$file" "$object.part" "$object")
-    fi
+for folder in library calcineGasFoam calcineParcelFoam; do
+    rebuild_after=$(ls -t build.sh library/*.H "$folder"/*.H "$WIRE_INCLUDE/calcine_wire.h" | head -n 1)
+    for file in "$folder"/*.C; do
+        object=$objects/$(basename "$file" .C).o
+        if [ ! "$object" -nt "$file" ] || [ ! "$object" -nt "$rebuild_after" ]; then
+            jobs+=("$file" "$object.part" "$object")
+        fi
+    done
 done
 # Two compilers at a time: each takes about half a GB.
 ((${#jobs[@]})) && printf '%s\0' "${jobs[@]}" | xargs -0 -n 3 -P 2 bash -c '

@@ -48,7 +48,9 @@ fn cube(size: f64, cells: usize) -> Arc<Mesh> {
 
 /// Parcels without gravity, stress and collisions, between walls of one restitution and friction.
 fn motion(mesh: &Mesh, restitution: f64, friction: f64) -> ParcelMotion {
-    let walls = mesh.patches().iter().map(|patch| ParcelWall {
+    let patches = mesh.patches().iter();
+    let bounding = patches.filter(|patch| mesh.partner(patch).is_none());
+    let walls = bounding.map(|patch| ParcelWall {
         patch: patch.name.clone(),
         motion: WallMotion::Still,
         impact: vec![ParcelImpact {
@@ -297,6 +299,22 @@ fn walls_rebound_rub_and_carry_along() {
         "{}",
         cloud.velocity(1)
     );
+}
+
+#[test]
+fn a_parcel_that_leaves_through_a_periodic_plane_comes_in_through_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let pairs = [["west", "east"], ["south", "north"]].map(|pair| pair.map(str::to_owned));
+    let mesh = Mesh::clone(&cube(1.0, 4)).with_periodic(&pairs).unwrap();
+    let mesh = Arc::new(mesh);
+    let start = Vec3::new(0.6, 0.3, 0.5);
+    let velocity = Vec3::new(2.0, -1.5, 0.1);
+    let parcels = setup(motion(&mesh, 1.0, 0.0), &[(start, velocity)], 1.0);
+    let mut cloud = Cloud::new(&mesh, &parcels, folder.path());
+    cloud.run(5, 0.25);
+    let due = (start + velocity * 1.25).map(|x| x.rem_euclid(1.0));
+    assert!((cloud.place(0) - due).norm() < 1e-12, "{}", cloud.place(0));
+    assert!((cloud.velocity(0) - velocity).norm() < 1e-15);
 }
 
 /// A bed that falls together, with all that the cloud does.

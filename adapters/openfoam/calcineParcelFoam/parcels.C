@@ -85,7 +85,6 @@ Foam::calcine::parcels::parcels(fvMesh& mesh, const IOdictionary& properties, co
 :
     mesh_(mesh),
     time_(const_cast<Time&>(mesh.time())),
-    properties_(properties),
     U_(named("U", mesh, IOobject::MUST_READ), mesh),
     rho_(named("rho", mesh, IOobject::NO_READ), mesh, dimensionedScalar("rho", dimDensity, 0)),
     mu_(named("mu", mesh, IOobject::NO_READ), mesh, dimensionedScalar("mu", dimPressure*dimTime, 1)),

@@ -15,7 +15,7 @@ use calcine_wire::Catalogue;
 use super::case::{odd_name, put};
 use super::dictionaries;
 use super::foam_file::{fixed, header, turning, vector};
-use super::parcels::{NAME, PROGRAM};
+use super::names::{PARCEL_PROGRAM as PROGRAM, PARCELS as NAME};
 
 /// Least solid fraction, and density in kg/m³, that the implicit packing takes for a cell: those of OpenFOAM's own cases.
 const LEAST: [f64; 2] = [1e-4, 1.0];

@@ -13,6 +13,8 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::Hello;
 use calcine_wire::hello::NEW;
 
+pub use super::names::PARCEL_PROGRAM as PROGRAM;
+use super::names::PARCELS as NAME;
 use super::parcel_case::ParcelCase;
 use super::{environment, identity, without_spaces};
 use crate::find::find_program;
@@ -20,10 +22,6 @@ use crate::launch::{Launcher, Program};
 use crate::particles::{self, LinkedParticles};
 use crate::solver::{ExternalSolver, Launch};
 
-/// Name in messages.
-pub(super) const NAME: &str = "OpenFOAM (parcels)";
-/// Name of the program.
-pub const PROGRAM: &str = "calcineParcelFoam";
 /// The variable that names another program.
 pub const VARIABLE: &str = "CALCINE_PARCELFOAM";
 /// The largest id, OpenFOAM's labels being signed integers of 32 bits.
