@@ -44,6 +44,11 @@ bool Foam::calcine::reboundingWalls::correct
     bool& keepParticle
 )
 {
+    // Periodic planes, which the cloud crosses itself.
+    if (pp.coupled())
+    {
+        return false;
+    }
     keepParticle = true;
     const vector normal = p.normal();
     vector& velocity = p.U();
