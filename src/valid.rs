@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
+use calcine_coupler::error::PartError;
 use thiserror::Error;
 
 use crate::assembly::{
-    AssemblyError, GasBackend, Pairing, PreparedCase, check_for_liggghts, native_parts,
-    write_inputs,
+    AssemblyError, GasBackend, Pairing, PreparedCase, check_for_liggghts,
+    check_for_openfoam_parcels, native_parts, write_inputs,
 };
 use crate::case::model::Case;
 use crate::case::packed::BedPacking;
 use crate::case::warnings::warnings;
-use crate::case::{CaseErrors, check_report, located, read_with, settle};
+use crate::case::{CaseErrors, Refusals, check_report, located, read_with, settle};
 use crate::laws::LawCatalogue;
 use crate::results::{self, ResultsError};
 
@@ -79,17 +80,24 @@ impl ValidCase {
         })
     }
 
-    /// The case in words: clocks, sizes, the flow, and whether LIGGGHTS can move its particles.
+    /// The case in words: clocks, sizes, the flow, and whether LIGGGHTS and OpenFOAM can move its particles.
     pub fn report(&self) -> String {
         let (case, prepared) = (&self.case, &self.prepared);
-        let refused = check_for_liggghts(case, prepared).err();
-        let refused = refused.map(|error| crate::error_chain::chain(&error));
+        let told = |refused: Result<(), PartError>| {
+            let refused = refused.err();
+            refused.map(|error| crate::error_chain::chain(&error))
+        };
+        let liggghts = told(check_for_liggghts(case, prepared));
+        let parcels = told(check_for_openfoam_parcels(case, prepared));
         check_report(
             case,
             &prepared.mesh,
             &prepared.particles,
             &self.packing,
-            refused.as_deref(),
+            Refusals {
+                liggghts: liggghts.as_deref(),
+                openfoam_parcels: parcels.as_deref(),
+            },
         )
     }
 

@@ -31,6 +31,50 @@ fn the_pressure_drop_of_a_bed_that_floats_is_its_weight_less_the_little_that_the
     assert!((0.0..0.015).contains(&missing), "{mean} of {weight} Pa");
 }
 
+/// The bed of beads with a stress that OpenFOAM's implicit packing bears.
+const SOFT: [&str; 2] = ["motion.parcels.pressure=10 Pa", "motion.parcels.floor=1e-2"];
+
+/// Beds by both codes for longer: `cargo xtask validate parcel-beds`.
+#[test]
+fn a_suspension_settles_to_the_same_height_natively_and_by_openfoam() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut set = vec![
+        "particles[0].place.grid.counts=[18, 6, 60]",
+        "particles[0].weight=14",
+        r#"gas.patch.bottom.inlet.superficial_velocity="0.05 m/s""#,
+        "time.end=0.7 s",
+    ];
+    set.extend(SOFT);
+    let found = ["native", "openfoam"].map(|particles| {
+        let out = folder.path().join(particles);
+        let words = ["--particles", particles];
+        program::run(&program::shipped("parcel-bed"), &out, &words, &set);
+        let summary = Summary::read(&out).unwrap();
+        let momentum = &summary.ledger.lines["particle_momentum"];
+        assert!(momentum.relative_error < 1e-12, "{momentum:?}");
+        let series = Series::read(&out).unwrap();
+        let heights = series.column("quantities.mean_height").to_vec();
+        // After 0.1 s, half of the way down, and settled; where the bed lands, OpenFOAM's rebounds for longer.
+        [heights[(heights.len() - 1) / 7], heights[heights.len() - 1]]
+    });
+    println!("{found:?}");
+    for (native, foam) in found[0].iter().zip(found[1]) {
+        assert!((foam / native - 1.0).abs() < 0.02, "{found:?}");
+    }
+}
+
+#[test]
+fn parcels_of_openfoam_that_are_killed_resume_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = program::shipped("parcel-bed");
+    let mut settings = vec!["time.end=0.15 s", "time.checkpoint.every=20 ms"];
+    settings.extend(SOFT);
+    let words = ["--particles", "openfoam"];
+    killed::resumes_to_the_same_bits(folder.path(), &[12], |out| {
+        program::command(&case, out, &words, &settings)
+    });
+}
+
 /// Mean slope of the drum of parcels in degrees from 0.4 s on.
 fn slope(folder: &std::path::Path, name: &str, set: &[&str]) -> f64 {
     let out = folder.join(name);

@@ -198,7 +198,7 @@ impl ExternalParticlesLaunch<'_> {
                 PARTICLES,
                 FailureKind::NotStarted,
                 "the particles are parcels, which programs of their own are not told to move; move them natively \
-                 (`--particles native`)",
+                 (`--particles native`) or by OpenFOAM (`--particles openfoam`)",
             ));
         }
         self.write_folder()?;
@@ -216,18 +216,13 @@ impl ExternalParticlesLaunch<'_> {
         let solver = self.solver.start(terms, supervisor)?;
         let particles = LinkedParticles::new(PARTICLES, solver, setup, u64::MAX)?;
         let fields = particles.fields();
-        let pairs = ids.iter().zip(&radii);
-        let other = pairs
-            .zip(fields.id.iter().zip(fields.radius))
-            .find(|((id, radius), (other, own))| id != other || radius.to_bits() != own.to_bits());
         let refuse = |message: String| {
             let kind = FailureKind::NotStarted;
             Err(PartError::new(PARTICLES, kind, message))
         };
-        if let Some(((id, radius), (other, own))) = other {
+        if let Some(message) = particles::other_than(&particles, &ids, &radii) {
             return refuse(format!(
-                "it starts with particle {other} of radius {own} m where the run has particle {id} of radius {radius} m; \
-                 take ids and radii as `particles.csv` or the checkpoint has them"
+                "{message}; take ids and radii as `particles.csv` or the checkpoint has them"
             ));
         }
         let mut rows = 0..if anew { ids.len() } else { 0 };

@@ -43,6 +43,22 @@ pub(crate) fn identity(
     read().map_err(|error| unusable(name, folder, error))
 }
 
+/// What is wrong with the particles that a solver starts with, where ids and radii must be these.
+pub(crate) fn other_than(
+    particles: &LinkedParticles,
+    ids: &[u64],
+    radii: &[f64],
+) -> Option<String> {
+    let fields = particles.fields();
+    let pairs = ids.iter().zip(radii);
+    let mut pairs = pairs.zip(fields.id.iter().zip(fields.radius));
+    let ((id, radius), (other, own)) = pairs
+        .find(|((id, radius), (other, own))| id != other || radius.to_bits() != own.to_bits())?;
+    Some(format!(
+        "it starts with particle {other} of radius {own} m where the run has particle {id} of radius {radius} m"
+    ))
+}
+
 fn unusable(name: &str, folder: &Path, error: StateFileError) -> PartError {
     let message = format!("the checkpoint {} cannot be used", folder.display());
     PartError::new(name, FailureKind::Io, message).caused_by(error)

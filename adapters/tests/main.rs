@@ -16,6 +16,7 @@ mod openfoam_flow;
 mod openfoam_inlets;
 mod openfoam_life;
 mod openfoam_openings;
+mod openfoam_parcels;
 mod openfoam_pasr;
 mod openfoam_periodic;
 mod openfoam_ranks;

@@ -39,6 +39,7 @@ fn backends(builder: SimulationBuilder, gas: &str, particles: &str) -> PyResult<
     let particles = match particles {
         "native" => ParticleBackend::Native,
         "liggghts" => ParticleBackend::Liggghts,
+        "openfoam" => ParticleBackend::Openfoam,
         "external" => ParticleBackend::External,
         _ => return unknown("particles", particles, "native, liggghts, external"),
     };

@@ -19,7 +19,9 @@ pub use interior::{ModelFactory, chemistry};
 pub use pairing::{GasBackend, Pairing, ParticleBackend};
 pub use prepared::PreparedCase;
 pub use settings::{RunSettings, SolverStart, SolverStarts};
-pub use solvers::{check_for_liggghts, native_parts, programs, write_inputs};
+pub use solvers::{
+    check_for_liggghts, check_for_openfoam_parcels, native_parts, programs, write_inputs,
+};
 
 use crate::case::model::Case;
 

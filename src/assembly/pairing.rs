@@ -22,6 +22,8 @@ pub enum ParticleBackend {
     Native,
     /// Debian's LIGGGHTS as a library.
     Liggghts,
+    /// The MP-PIC cloud of Debian's OpenFOAM, for parcels.
+    Openfoam,
     /// The program of `external.particles`, which couples through Calcine's C ABI.
     External,
 }
@@ -94,6 +96,7 @@ impl ParticleBackend {
         match self {
             ParticleBackend::Native => "native",
             ParticleBackend::Liggghts => "liggghts",
+            ParticleBackend::Openfoam => "openfoam",
             ParticleBackend::External => "external",
         }
     }

@@ -64,6 +64,8 @@ impl SolverStarts {
             }),
             particles: start(match (pairing.particles, &case.external_particles) {
                 (ParticleBackend::External, Some(external)) => external.ranks,
+                // OpenFOAM's parcels are coupled on one rank.
+                (ParticleBackend::Openfoam, _) => 1,
                 _ => case.liggghts.ranks,
             }),
         }

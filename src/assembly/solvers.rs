@@ -8,7 +8,8 @@ use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{self, FROZEN_STEP, LiggghtsLaunch};
 use calcine_adapters::openfoam::case::OpenfoamCase;
-use calcine_adapters::openfoam::{self, LIBRARY, OpenfoamLaunch};
+use calcine_adapters::openfoam::parcels::ParcelLaunch;
+use calcine_adapters::openfoam::{self, LIBRARY, OpenfoamLaunch, ParcelCase};
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
@@ -60,6 +61,11 @@ pub fn write_inputs(
         inputs.write(&target)?;
         written.push(target);
     }
+    if pairing.particles == ParticleBackend::Openfoam {
+        let target = folder.join("openfoam-parcels");
+        parcel_case(case, prepared, starts.particles.ranks).write(&target)?;
+        written.push(target);
+    }
     Ok(written)
 }
 
@@ -102,6 +108,9 @@ pub fn programs(case: &Case, pairing: Pairing) -> Result<Vec<PathBuf>, PartError
     if pairing.particles == ParticleBackend::Liggghts {
         found.push(liggghts::find()?);
     }
+    if pairing.particles == ParticleBackend::Openfoam {
+        found.push(openfoam::parcels::find()?);
+    }
     Ok(found)
 }
 
@@ -130,6 +139,22 @@ pub fn check_for_liggghts(case: &Case, prepared: &PreparedCase) -> Result<(), Pa
     );
     inputs.check()?;
     inputs.script().map(|_| ())
+}
+
+/// What OpenFOAM's cloud would not do of the case, for `calcine check`.
+pub fn check_for_openfoam_parcels(case: &Case, prepared: &PreparedCase) -> Result<(), PartError> {
+    parcel_case(case, prepared, 1).check()
+}
+
+/// What OpenFOAM's cloud is told of the parcels.
+fn parcel_case<'a>(case: &'a Case, prepared: &'a PreparedCase, ranks: u32) -> ParcelCase<'a> {
+    ParcelCase {
+        setup: &prepared.particles,
+        mesh: &prepared.mesh,
+        moving_drag: case.coupling.window_drag.follows(),
+        case_hash: &case.hash,
+        ranks,
+    }
 }
 
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
@@ -259,6 +284,22 @@ impl Assembly<'_> {
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/liggghts")?,
                     log: self.absolute("log/liggghts.log")?,
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(launch.launch(supervisor)?))
+            }
+            ParticleBackend::Openfoam => {
+                let start = &self.settings.starts.particles;
+                let launch = ParcelLaunch {
+                    setup,
+                    mesh: Arc::clone(&self.prepared.mesh),
+                    moving_drag: self.case.coupling.window_drag.follows(),
+                    case_hash: self.case.hash.clone(),
+                    folder: self.absolute("solvers/openfoam-parcels")?,
+                    log: self.absolute("log/openfoam-parcels.log")?,
+                    ranks: start.ranks,
+                    launcher: start.launcher.clone(),
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };

@@ -62,7 +62,7 @@ pub fn check_report(
     mesh: &Mesh,
     setup: &ParticleSetup,
     packing: &BedPacking,
-    not_with_liggghts: Option<&str>,
+    refusals: Refusals<'_>,
 ) -> String {
     let (particles, void_fraction) = (setup.id.len(), packing.void_fraction);
     let cells = mesh.cells();
@@ -210,7 +210,7 @@ pub fn check_report(
             let _ = writeln!(text, "    {line}");
         }
     }
-    honoured(&mut text, case, not_with_liggghts);
+    honoured(&mut text, case, refusals);
     text
 }
 
@@ -300,19 +300,47 @@ fn diffusivity(case: &Case) -> String {
     }
 }
 
+/// Name of OpenFOAM's cloud of parcels in the report.
+const FOAM_PARCELS: &str = "OpenFOAM parcels";
+
+/// Why particle solvers cannot move the particles of a case; `None` where they can.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Refusals<'a> {
+    /// LIGGGHTS.
+    pub liggghts: Option<&'a str>,
+    /// OpenFOAM's cloud of parcels.
+    pub openfoam_parcels: Option<&'a str>,
+}
+
 /// What each backend makes of the case.
-fn honoured(text: &mut String, case: &Case, not_with_liggghts: Option<&str>) {
+fn honoured(text: &mut String, case: &Case, refusals: Refusals<'_>) {
     let _ = writeln!(text, "  backends:");
     let external = case.external_gas.as_ref().map(|_| "external gas");
     let names = ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"];
     let particles = case.external_particles.as_ref();
     let particles = particles.map(|_| "external particles");
-    for name in names.into_iter().chain(external).chain(particles) {
+    let parcels = case.motion.as_ref().and_then(|one| one.parcels.as_ref());
+    let parcels = parcels.map(|_| FOAM_PARCELS);
+    for name in names
+        .into_iter()
+        .chain(parcels)
+        .chain(external)
+        .chain(particles)
+    {
         let foam = openfoam(case);
-        let refused = not_with_liggghts.map(|reason| format!("not this case: {reason}"));
+        let refused = match name {
+            "LIGGGHTS" => refusals.liggghts,
+            FOAM_PARCELS => refusals.openfoam_parcels,
+            _ => None,
+        };
+        let refused = refused.map(|reason| format!("not this case: {reason}"));
         let note = match (name, &refused) {
-            ("LIGGGHTS", Some(refused)) => refused,
+            (_, Some(refused)) => refused,
             ("OpenFOAM", _) => foam.as_str(),
+            (FOAM_PARCELS, _) => {
+                "every key but `motion.parcels.most_steps`: a window is one step of the cloud, whose tracks have parts of the Courant \
+                 number `courant` at most"
+            }
             ("native gas", _) if case.openfoam.start.is_some() => {
                 "not its start: `openfoam.start` is the start of an OpenFOAM gas alone"
             }

@@ -66,7 +66,7 @@ use calcine_coupler::regular_file;
 use std::path::Path;
 
 pub use boundaries::mesh_of;
-pub use check::check_report;
+pub use check::{Refusals, check_report};
 pub use kind::{kind_of, kind_of_text};
 pub use located::located;
 pub use meshing::{MeshingError, mesh};

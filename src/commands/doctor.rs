@@ -34,6 +34,8 @@ pub struct DoctorReport {
     pub openfoam: Option<String>,
     /// Our solver on OpenFOAM.
     pub openfoam_adapter: Adapter,
+    /// Our host of OpenFOAM's cloud of parcels.
+    pub parcel_adapter: Adapter,
     /// Version of Debian's LIGGGHTS library.
     pub liggghts: Option<String>,
     /// Our host of LIGGGHTS.
@@ -112,6 +114,7 @@ pub fn run() -> DoctorReport {
         mpi: mpi(),
         openfoam: package_version("openfoam"),
         openfoam_adapter: Adapter::find(openfoam::SOLVER_VARIABLE, openfoam::SOLVER),
+        parcel_adapter: Adapter::find(openfoam::parcels::VARIABLE, openfoam::parcels::PROGRAM),
         liggghts: package_version("libliggghts-dev").or_else(|| package_version("liggghts")),
         liggghts_adapter: Adapter::find(liggghts::HOST_VARIABLE, liggghts::HOST),
         mpi_adapter: Adapter::find(MPI_VARIABLE, MPI_PROGRAM),
@@ -202,6 +205,7 @@ impl DoctorReport {
             ("MPI", self.mpi.is_some()),
             ("OpenFOAM", self.openfoam.is_some()),
             ("calcineGasFoam", self.openfoam_adapter.needs_nothing()),
+            ("calcineParcelFoam", self.parcel_adapter.needs_nothing()),
             ("LIGGGHTS", self.liggghts.is_some()),
             ("calcine-liggghts", self.liggghts_adapter.needs_nothing()),
             ("calcine-mpi", self.mpi_adapter.needs_nothing()),
@@ -228,11 +232,14 @@ impl DoctorReport {
     /// Pairings that can run here.
     fn pairings(&self) -> Vec<&'static str> {
         let (foam, particles) = (self.openfoam_works(), self.liggghts_works());
+        let parcels = self.openfoam.is_some() && self.mpi.is_some() && self.parcel_adapter.works();
         let all = [
             ("native+native", true),
             ("native+liggghts", particles),
             ("openfoam+native", foam),
             ("openfoam+liggghts", foam && particles),
+            ("native+openfoam", parcels),
+            ("openfoam+openfoam", foam && parcels),
         ];
         all.into_iter()
             .filter(|(_, works)| *works)
@@ -256,6 +263,7 @@ impl fmt::Display for DoctorReport {
         writeln!(f, "  MPI               {}", or_not(&self.mpi))?;
         writeln!(f, "  OpenFOAM          {}", or_not(&self.openfoam))?;
         writeln!(f, "  calcineGasFoam    {}", self.openfoam_adapter)?;
+        writeln!(f, "  calcineParcelFoam {}", self.parcel_adapter)?;
         writeln!(f, "  LIGGGHTS          {}", or_not(&self.liggghts))?;
         writeln!(f, "  calcine-liggghts  {}", self.liggghts_adapter)?;
         writeln!(f, "  calcine-mpi       {}", self.mpi_adapter)?;
@@ -300,6 +308,7 @@ mod tests {
             mpi: Some("mpirun (Open MPI) 4.1.4".into()),
             openfoam: Some("1912.200626-1+b1".into()),
             openfoam_adapter: adapter("calcineGasFoam"),
+            parcel_adapter: adapter("calcineParcelFoam"),
             liggghts: Some("3.8.0+repack1-9+b2".into()),
             liggghts_adapter: adapter("calcine-liggghts"),
             mpi_adapter: adapter("calcine-mpi"),
@@ -320,7 +329,9 @@ mod tests {
             assert!(REMEDY.contains(command), "{REMEDY}");
         }
         assert!(
-            text.contains("missing: HDF5, MPI, OpenFOAM, calcineGasFoam, LIGGGHTS"),
+            text.contains(
+                "missing: HDF5, MPI, OpenFOAM, calcineGasFoam, calcineParcelFoam, LIGGGHTS"
+            ),
             "{text}"
         );
     }
@@ -328,7 +339,7 @@ mod tests {
     #[test]
     fn a_machine_with_everything_runs_all_pairings() {
         let text = whole().to_string();
-        let all = "native+native, native+liggghts, openfoam+native, openfoam+liggghts";
+        let all = "native+native, native+liggghts, openfoam+native, openfoam+liggghts, native+openfoam, openfoam+openfoam";
         assert!(text.contains(all), "{text}");
         assert!(text.ends_with("transports: shared-memory, mpi"), "{text}");
         assert!(!text.contains("missing"), "{text}");

@@ -30,6 +30,7 @@ mod hopper_bed;
 mod kept;
 mod load;
 mod moving_bed;
+mod parcel_beds;
 #[path = "../support/program.rs"]
 mod program;
 #[cfg(feature = "hdf5")]
@@ -85,6 +86,7 @@ const ALL: &[(&str, fn())] = &[
     ("load", load::run),
     ("moving-bed", moving_bed::run),
     ("moving-resolved-bed", moving_bed::run_resolved),
+    ("parcel-beds", parcel_beds::run),
     ("repose", repose::run),
     #[cfg(feature = "hdf5")]
     ("restarts", restarts::run),

@@ -11,8 +11,8 @@ use crate::headers;
 use crate::steps::{Stop, TaskResult, new_log, output, quietly, say, step};
 use crate::workspace::{CargoProfile, Workspace};
 
-/// The solver that `build.sh` leaves in its output folder.
-pub const SOLVER: &str = "calcineGasFoam";
+/// The solvers that `build.sh` leaves in its output folder.
+pub const SOLVERS: [&str; 2] = ["calcineGasFoam", "calcineParcelFoam"];
 
 /// What the C++ is made of, and where it goes.
 #[derive(Debug)]
@@ -39,7 +39,13 @@ impl OpenfoamAdapter {
     /// True if the solver there was built from exactly these sources.
     pub fn is_current(&self) -> bool {
         let stamp = fs::read_to_string(self.stamp_file()).unwrap_or_default();
-        stamp == self.stamp && self.folder.join(SOLVER).is_file()
+        stamp == self.stamp && self.missing().is_none()
+    }
+
+    /// A solver that is not there.
+    fn missing(&self) -> Option<&'static str> {
+        let mut solvers = SOLVERS.into_iter();
+        solvers.find(|name| !self.folder.join(name).is_file())
     }
 
     /// Compiles and links, unless that is done. The C ABI's static library of `profile` must be
@@ -68,8 +74,8 @@ impl OpenfoamAdapter {
         step("compile the OpenFOAM adapter (a few minutes)", || {
             quietly(&mut command, &log)
         })?;
-        if !self.folder.join(SOLVER).is_file() {
-            let message = format!("build.sh left no {SOLVER} in {}", self.folder.display());
+        if let Some(name) = self.missing() {
+            let message = format!("build.sh left no {name} in {}", self.folder.display());
             return Err(Stop(message));
         }
         let path = self.stamp_file();

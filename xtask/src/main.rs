@@ -57,7 +57,8 @@ usage: cargo xtask TASK
         [--from K]        that nothing is left (default: 500 trials)
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, elastic-box, external-restarts, flame,
-                          fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, repose, restarts, shaft-choices, shaft-flames,
+                          fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, parcel-beds,
+                          repose, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, slurm,
                           spouted-bed, square-cylinder, tg-furnace, voids";
 

@@ -8,6 +8,7 @@
 #include "gas.H"
 #include "link.H"
 #include "meshIdentity.H"
+#include "process.H"
 #include "windowLog.H"
 
 #include "argList.H"
@@ -18,7 +19,6 @@
 #include "SolverPerformance.H"
 #include "Time.H"
 
-#include <cstdlib>
 #include <sstream>
 
 namespace
@@ -395,28 +395,6 @@ void run(const argList& args, calcine::link& link)
     Info<< "End" << endl;
 }
 
-[[noreturn]] void fail(calcine::link& link, calcine_failure kind, const std::string& text)
-{
-    Serr<< "calcineGasFoam failed: " << text.c_str() << endl;
-    link.failed(kind, text);
-    // Other ranks may wait for this one somewhere: MPI cannot be ended in an orderly way. And OpenFOAM's own end
-    // would say that all went well (exit code 0).
-    std::cout.flush();
-    std::_Exit(1);
-}
-
-// OpenFOAM's message on one line, with the file of an input error.
-std::string words(const error& what, const std::string& place)
-{
-    std::istringstream stream(what.message());
-    std::string text, word;
-    while (stream >> word)
-    {
-        text += (text.empty() ? "" : " ") + word;
-    }
-    return text + place;
-}
-
 } // End anonymous namespace
 
 
@@ -426,51 +404,5 @@ int main(int argc, char* argv[])
     argList::addOption("resume", "dir", "take up the state of a checkpoint in this folder");
     argList::addOption("from", "dir", "start from the fields of another run's checkpoint");
     argList args(argc, argv);
-    FatalError.throwExceptions();
-    FatalIOError.throwExceptions();
-
-    try
-    {
-        calcine::link link(Pstream::myProcNo());
-        try
-        {
-            run(args, link);
-            return 0;
-        }
-        catch (const IOerror& what)
-        {
-            std::ostringstream place;
-            place << " (" << what.ioFileName() << ", line " << what.ioStartLineNumber() << ")";
-            fail(link, CALCINE_FAILURE_INPUT, words(what, place.str()));
-        }
-        catch (const error& what)
-        {
-            fail(link, CALCINE_FAILURE_OTHER, words(what, ""));
-        }
-        catch (const calcine::coordinatorGone&)
-        {
-            throw;
-        }
-        catch (const calcine::solverFailure& what)
-        {
-            fail(link, what.kind, what.what());
-        }
-        catch (const std::bad_alloc&)
-        {
-            fail(link, CALCINE_FAILURE_MEMORY, "there is too little memory");
-        }
-        catch (const std::exception& what)
-        {
-            fail(link, CALCINE_FAILURE_OTHER, what.what());
-        }
-    }
-    catch (const calcine::coordinatorGone& what)
-    {
-        Serr<< "calcineGasFoam ends: " << what.what() << endl;
-    }
-    catch (const std::exception& what)
-    {
-        Serr<< "calcineGasFoam cannot reach Calcine: " << what.what() << endl;
-    }
-    std::_Exit(2);
+    return calcine::process("calcineGasFoam", [&args](calcine::link& link) { run(args, link); });
 }

@@ -70,7 +70,7 @@ void Foam::calcine::link::greet(const introduction& own)
 {
     const calcine_hello hello =
     {
-        "gas", "OpenFOAM", own.version.c_str(), own.caseHash.c_str(), own.meshHash.c_str(),
+        own.role.c_str(), own.name.c_str(), own.version.c_str(), own.caseHash.c_str(), own.meshHash.c_str(),
         own.origin.empty() ? nullptr : own.origin.c_str(), own.catalogue.c_str(), static_cast<uint64_t>(own.cells), static_cast<uint32_t>(own.ranks)
     };
     check(calcine_link_handshake(link_, &hello, handshakePatience));
@@ -80,15 +80,7 @@ void Foam::calcine::link::greet(const introduction& own)
 void Foam::calcine::link::claim(const labelUList& cells)
 {
     loan(CALCINE_OWNED, cells.size());
-    double* column = nullptr;
-    uint64_t length = 0;
-    check(calcine_link_loaned_column(link_, "cell", &column, &length));
-    requireLength("cell", length, cells.size());
-    forAll(cells, i)
-    {
-        const uint64_t cell = cells[i];
-        std::memcpy(column + i, &cell, sizeof cell);
-    }
+    put("cell", std::vector<uint64_t>(cells.begin(), cells.end()));
     send();
 }
 
@@ -137,6 +129,16 @@ void Foam::calcine::link::get(const char* name, vectorField& values) const
 }
 
 
+void Foam::calcine::link::get(const char* name, std::vector<uint64_t>& values) const
+{
+    const double* column = nullptr;
+    uint64_t length = 0;
+    check(calcine_link_column(link_, name, &column, &length));
+    requireLength(name, length, values.size());
+    std::memcpy(values.data(), column, length*sizeof(uint64_t));
+}
+
+
 void Foam::calcine::link::loan(calcine_kind kind, label count)
 {
     check(calcine_link_loan(link_, kind, static_cast<uint64_t>(count)));
@@ -163,6 +165,16 @@ void Foam::calcine::link::put(const char* name, const UList<vector>& values)
     {
         std::copy(values[i].cdata(), values[i].cdata() + 3, column + 3*i);
     }
+}
+
+
+void Foam::calcine::link::put(const char* name, const std::vector<uint64_t>& values)
+{
+    double* column = nullptr;
+    uint64_t length = 0;
+    check(calcine_link_loaned_column(link_, name, &column, &length));
+    requireLength(name, length, values.size());
+    std::memcpy(column, values.data(), length*sizeof(uint64_t));
 }
 
 

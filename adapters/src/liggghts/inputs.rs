@@ -88,7 +88,7 @@ impl Inputs<'_> {
         if matches!(setup.motion, Motion::Parcels(_)) {
             return refuse(
                 "the particles are parcels, and LIGGGHTS moves particles that touch each other; move parcels natively \
-                 (`--particles native`)"
+                 (`--particles native`) or by OpenFOAM (`--particles openfoam`)"
                     .into(),
             );
         }

@@ -11,7 +11,7 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup, GasStart};
 use calcine_wire::Catalogue;
 
-use super::names::NAME;
+use super::names::{NAME, SOLVER};
 use super::start_fields::StartFields;
 use super::stock::{self, StockSolver};
 use super::{chemistry, decompose, dictionaries, species, turbulence};
@@ -120,7 +120,7 @@ impl OpenfoamCase<'_> {
 
     fn write_own(&self, folder: &Path, start: &StartFields) -> Result<(), PartError> {
         let setup = self.setup;
-        let control = dictionaries::control(&self.beside(folder, "system/controlDict")?);
+        let control = dictionaries::control(SOLVER, &self.beside(folder, "system/controlDict")?);
         for (name, text) in [
             ("system/controlDict", control),
             ("0/U", start.applied("U", dictionaries::velocity(setup))),
@@ -252,9 +252,7 @@ impl OpenfoamCase<'_> {
             if self.mesh.patch(name).is_none() {
                 return refuse(format!("the mesh has no patch `{name}`"));
             }
-            // What OpenFOAM reads as one word.
-            let odd = |c: char| c.is_whitespace() || "\"'/;{}()".contains(c);
-            if name.is_empty() || name.contains(odd) {
+            if odd_name(name) {
                 return refuse(format!("OpenFOAM cannot have a patch named `{name}`"));
             }
         }
@@ -303,6 +301,12 @@ fn is_straight(mesh: &Mesh, face: usize) -> bool {
     skew(inner).max(skew(outer)) <= 1e-9 * distance
 }
 
+/// A name that OpenFOAM does not read as one word.
+pub(super) fn odd_name(name: &str) -> bool {
+    let odd = |c: char| c.is_whitespace() || "\"'/;{}()".contains(c);
+    name.is_empty() || name.contains(odd)
+}
+
 fn failed<'a>(path: &'a Path, doing: &'a str) -> impl Fn(io::Error) -> PartError + 'a {
     move |error| {
         let message = format!("{} cannot be {doing}", path.display());
@@ -314,7 +318,7 @@ fn make(folder: &Path) -> Result<(), PartError> {
     fs::create_dir_all(folder).map_err(failed(folder, "made"))
 }
 
-fn put(path: &Path, text: &str) -> Result<(), PartError> {
+pub(super) fn put(path: &Path, text: &str) -> Result<(), PartError> {
     if let Some(folder) = path.parent() {
         make(folder)?;
     }

@@ -19,10 +19,11 @@ use super::stock::StockSolver;
 
 /// `system/controlDict`, after what it includes. The coordinator drives time, so that none of its times
 /// matters.
-pub fn control(include: &str) -> String {
+pub fn control(program: &str, include: &str) -> String {
     header("dictionary", "controlDict")
         + include
-        + "application     calcineGasFoam;\nstartFrom       startTime;\nstartTime       0;\n\
+        + &format!("application     {program};\n")
+        + "startFrom       startTime;\nstartTime       0;\n\
            stopAt          endTime;\nendTime         1;\ndeltaT          1;\n\
            writeControl    timeStep;\nwriteInterval   1;\nwriteFormat     binary;\n\
            writePrecision  17;\nwriteCompression off;\ntimeFormat      general;\n\

@@ -1,4 +1,5 @@
-//! Gas in Debian's OpenFOAM 1912: the solver calcineGasFoam in a case that is generated here.
+//! Gas and parcels in Debian's OpenFOAM 1912: the solvers calcineGasFoam and calcineParcelFoam ([`parcels`]) in cases that are
+//! generated here.
 
 pub mod case;
 pub mod chemistry;
@@ -8,6 +9,8 @@ mod dictionary;
 mod foam_file;
 mod identity;
 mod names;
+mod parcel_case;
+pub mod parcels;
 mod species;
 mod start_fields;
 pub mod stock;
@@ -33,6 +36,7 @@ use crate::solver::{ExternalSolver, Launch};
 use case::OpenfoamCase;
 use names::NAME;
 pub use names::SOLVER;
+pub use parcel_case::ParcelCase;
 use stock::StockSolver;
 
 /// The library with Calcine's fvOption, beside it.
@@ -113,7 +117,7 @@ impl OpenfoamLaunch<'_> {
         .into_iter()
         .flatten()
         {
-            without_spaces(folder)?;
+            without_spaces(NAME, folder)?;
         }
         case.write(&launch.folder)?;
         let catalogue = case.catalogue();
@@ -201,7 +205,7 @@ fn stock_program(own: &Path, name: &str) -> Result<PathBuf, PartError> {
 }
 
 /// OpenFOAM takes no path with a space or a quote in it.
-fn without_spaces(folder: &Path) -> Result<(), PartError> {
+fn without_spaces(name: &str, folder: &Path) -> Result<(), PartError> {
     let text = folder.to_string_lossy();
     if !text.contains([' ', '\t', '"', '\'']) {
         return Ok(());
@@ -211,7 +215,7 @@ fn without_spaces(folder: &Path) -> Result<(), PartError> {
          without, with `--out`",
         folder.display()
     );
-    Err(PartError::new(NAME, FailureKind::NotStarted, message))
+    Err(PartError::new(name, FailureKind::NotStarted, message))
 }
 
 /// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR

@@ -12,12 +12,12 @@ const HELD: &[Key] = &[
 
 #[rustfmt::skip]
 const PARCELS: &[Key] = &[
-    key("courant", Number(D::NONE, UpTo(0.0, 1.0)), Default("0.5"), "Courant number of a parcel in a step at most: a window has as many steps as that needs.", "0.5"),
+    key("courant", Number(D::NONE, UpTo(0.0, 1.0)), Default("0.5"), "Courant number of a parcel in a step at most: a window has as many steps as that needs. Of OpenFOAM's parcels, whose step is the window, in a part of a track.", "0.5"),
     key("most_steps", Whole(1, 1_000_000), Default("1000"), "Steps of a window at most; a window that needs more ends the run.", "1000"),
     key("packing", Choice(words::<PackingScheme>), Default("implicit"), "How the stress acts: the solid fraction at the end of the step is solved for, its gradient at the start acts limited (Snider), or not at all.", "\"implicit\""),
     key("pressure", Number(D::PRESSURE, Positive), Required, "Constant P_s of the stress by Harris and Crighton.", "\"10 Pa\""),
     key("exponent", Number(D::NONE, Between(1.0, 10.0)), Default("2"), "Its exponent β.", "2"),
-    key("floor", Number(D::NONE, Within(0.0, 1.0)), Default("1e-7"), "Share e of the void that its distance from close packing has at least; of the explicit packing only.", "1e-7"),
+    key("floor", Number(D::NONE, Within(0.0, 1.0)), Default("1e-7"), "Share e of the void that its distance from close packing has at least; of the explicit packing, and of OpenFOAM's implicit one, which needs 0.01 or more.", "1e-7"),
     key("close_packing", Number(D::NONE, Within(0.0, 1.0)), Required, "Solid fraction of the closest packing, at most that of the smoother.", "0.6"),
     key("restitution", Number(D::NONE, UpTo(0.0, 1.0)), Without("required with explicit packing, damping and isotropy"), "Coefficient of restitution of two particles, above 0 and up to 1.", "0.9"),
     key("damping", Truth, Default("false"), "Whether collisions damp velocities towards their mean.", "true"),
