@@ -63,6 +63,11 @@ pub(super) fn case(
         );
     }
     let title = root.text("title");
+    if !common::gas_alone(root) {
+        for key in ["particles", "materials", "laws", "coupling"] {
+            root.need(key);
+        }
+    }
     let folder = path.parent().unwrap_or(Path::new("."));
     let time = time::read(root);
     let mesh = mesh::read(root, folder);

@@ -246,6 +246,9 @@ fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
     let patch = reader.text("patch");
     let probe = reader.text("probe");
     let statistic = statistic(reader, probe.is_some().then_some(Statistic::Mean));
+    if statistic == Some(Statistic::MassFlowMean) {
+        passages::flow_mean(reader, (field, patch), known);
+    }
     if statistic == Some(Statistic::Sum) {
         let help = "write \"mean\", which is over the volume of gas or the area of a patch";
         reader.fail("statistic", "is \"sum\", which no gas field has", help);
@@ -285,7 +288,10 @@ fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'
     let over = particle_place(reader, probe, known);
     let (field, statistic) = (field?, statistic?);
     let summed = counts || ["mass", "kinetic_energy"].contains(&field);
-    if statistic == Statistic::Sum && !summed {
+    if statistic == Statistic::MassFlowMean {
+        let help = "write \"mean\"; what particles carry out is measured by `discharge`";
+        reader.fail("statistic", "is of gas through a patch alone", help);
+    } else if statistic == Statistic::Sum && !summed {
         let help = "write \"mean\"; sums are of count, mass and kinetic_energy";
         reader.fail("statistic", format!("is the sum of {field}"), help);
     } else if counts && statistic != Statistic::Sum {
