@@ -119,6 +119,7 @@ fn means_by_mass_flow_of_mixtures_are_those_of_the_streams_that_came_in() {
     let gas = r#"[gas]
 mixture = "flue"
 species = ["N2", "CO2"]
+schmidt = 0.7
 initial = { temperature = "300 K", pressure = "1 atm", composition = { mass = { N2 = 1 } } }
 controls = { outer_tolerance = 1e-11, outer_iterations = 100 }
 [gas.patch.west]
@@ -173,7 +174,7 @@ fn a_piece_without_an_outlet_is_refused_by_its_place_and_its_patches() {
         (
             "one",
             shut.replace(west, outlet),
-            "1 has no `outlet` or `opening`: 18 cells about (0.0450, 0.0025, 0.0025) m with the patches gap, east, side",
+            "1 has no `outlet` or `opening`: 18 cells about (0.0450, 0.0025, 0.0025) m with the patches side, gap, east",
         ),
         // Both are closed, and have one level of pressure between them.
         (

@@ -184,11 +184,13 @@ fn damage_of_a_mesh_is_told_with_its_place_and_the_remedy() {
         said
     };
     // A point in the middle far above the mesh turns cells around it inside out.
-    duct(folder.path(), &|at| {
-        let middle = at.iter().all(|level| (level - 0.5).abs() < 1e-9);
-        let [x, y, z] = upright(at);
-        [x, y, if middle { z + 10.0 } else { z }]
-    });
+    fresh();
+    changed(
+        folder.path(),
+        "points",
+        "(0.03 0.005 0.05)",
+        "(0.03 0.005 10)",
+    );
     let text = said();
     assert!(
         text.contains("about (0.") && text.contains("has a volume of -"),
@@ -229,7 +231,7 @@ fn all_patches_without_a_condition_are_told_at_once() {
     for words in [
         "3 patches of the mesh have no boundary condition: `west`, `east`, `lid`, and",
         "give each one in `gas.patch.west`, `gas.patch.east`, `gas.patch.lid`",
-        "`gas.patch.top` names no patch of the mesh, which has west, east, side, bottom, lid",
+        "`gas.patch.top` names no patch of the mesh, which has west, side, bottom, east, lid",
     ] {
         assert!(said.contains(words), "{said}");
     }

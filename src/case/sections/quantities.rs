@@ -245,7 +245,7 @@ fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
     let field = reader.choice("gas").map(|GasField(field)| field);
     let patch = reader.text("patch");
     let probe = reader.text("probe");
-    let statistic = statistic(reader, probe.is_some().then_some(Statistic::Mean));
+    let statistic = statistic(reader, reader.has("probe").then_some(Statistic::Mean));
     if statistic == Some(Statistic::MassFlowMean) {
         passages::flow_mean(reader, (field, patch), known);
     }
@@ -282,7 +282,7 @@ fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'
     let counts = field == Some("count");
     let unstated = match counts {
         true => Some(Statistic::Sum),
-        false => probe.is_some().then_some(Statistic::Mean),
+        false => reader.has("probe").then_some(Statistic::Mean),
     };
     let statistic = statistic(reader, unstated);
     let over = particle_place(reader, probe, known);
