@@ -188,7 +188,7 @@ fn damage_of_a_mesh_is_told_with_its_place_and_the_remedy() {
     changed(
         folder.path(),
         "points",
-        "(0.03 0.005 0.05)",
+        "(2.9999999999999998890e-2 5.0000000000000001041e-3 5.0000000000000002776e-2)",
         "(0.03 0.005 10)",
     );
     let text = said();
