@@ -1,6 +1,6 @@
 //! Cases without particles: the gas alone, natively and with OpenFOAM, resumed, compared, swept, in a report.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::fs;
 use std::path::Path;

@@ -201,7 +201,7 @@ fn damage_of_a_mesh_is_told_with_its_place_and_the_remedy() {
     changed(folder.path(), "boundary", "top", "bottom");
     let text = said();
     assert!(
-        text.contains("two patches have the name `bottom`; rename one"),
+        text.contains("two patches have the name `bottom`") && text.contains("rename one"),
         "{text}"
     );
     // A file that OpenFOAM packed.
