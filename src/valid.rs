@@ -110,7 +110,7 @@ impl ValidCase {
                 true => GasBackend::Native,
                 false => pairing.gas,
             },
-            ..pairing
+            particles: pairing.particles_of(&self.case),
         };
         if !written.is_native() {
             let place = std::env::temp_dir();

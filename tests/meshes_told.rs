@@ -23,7 +23,7 @@ fn duct(folder: &Path, shape: &dyn Fn([f64; 3]) -> [f64; 3]) -> PathBuf {
     case
 }
 
-/// Exit code and all that is printed.
+/// Exit code and all that is printed, in one line.
 fn calcine(folder: &Path, words: &[&str], set: &[&str]) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
     command.current_dir(folder).args(words);
@@ -32,8 +32,9 @@ fn calcine(folder: &Path, words: &[&str], set: &[&str]) -> (Option<i32>, String)
         command.args(["--set", setting]);
     }
     let output = command.output().unwrap();
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code(), String::from_utf8(text).unwrap())
+    let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    let words = text.split_whitespace().filter(|word| *word != "│");
+    (output.status.code(), words.collect::<Vec<_>>().join(" "))
 }
 
 /// In m.
@@ -161,4 +162,106 @@ fn central_convection_of_fast_gas_in_coarse_cells_that_lean_is_warned_of() {
     };
     assert!(said("central").contains("lean by up to 45 degrees"));
     assert!(!said("van-leer").contains("central convection"));
+}
+
+/// Replaces the first of a text in a file of the mesh.
+fn changed(folder: &Path, file: &str, from: &str, to: &str) {
+    let path = folder.join("polyMesh").join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{text}");
+    fs::write(&path, text.replacen(from, to, 1)).unwrap();
+}
+
+#[test]
+fn damage_of_a_mesh_is_told_with_its_place_and_the_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let fresh = || {
+        duct(folder.path(), &upright);
+    };
+    let said = || {
+        let (code, said) = calcine(folder.path(), &["check", "case.toml"], &[]);
+        assert_eq!(code, Some(2), "{said}");
+        said
+    };
+    // A point in the middle far above the mesh turns cells around it inside out.
+    fresh();
+    changed(
+        folder.path(),
+        "points",
+        "(2.9999999999999998890e-2 5.0000000000000001041e-3 5.0000000000000002776e-2)",
+        "(0.03 0.005 10)",
+    );
+    let text = said();
+    assert!(
+        text.contains("about (0.") && text.contains("has a volume of -"),
+        "{text}"
+    );
+    // Two patches of one name.
+    fresh();
+    changed(folder.path(), "boundary", "top", "bottom");
+    let text = said();
+    assert!(
+        text.contains("two patches have the name `bottom`") && text.contains("rename one"),
+        "{text}"
+    );
+    // A file that OpenFOAM packed.
+    fresh();
+    let points = folder.path().join("polyMesh/points");
+    fs::rename(&points, points.with_extension("gz")).unwrap();
+    let text = said();
+    assert!(
+        text.contains("points.gz is compressed") && text.contains("gunzip"),
+        "{text}"
+    );
+}
+
+#[test]
+fn all_patches_without_a_condition_are_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    let block = Block {
+        levels: [even(4), even(2), even(6)],
+        patches: ["west", "east", "side", "side", "bottom", "lid"],
+        hole: None,
+        shape: &upright,
+    };
+    block.write(folder.path());
+    let (code, said) = calcine(folder.path(), &["check", "case.toml"], &[]);
+    assert_eq!(code, Some(2), "{said}");
+    for words in [
+        "3 patches of the mesh have no boundary condition: `west`, `east`, `lid`, and",
+        "give each one in `gas.patch.west`, `gas.patch.east`, `gas.patch.lid`",
+        "`gas.patch.top` names no patch of the mesh, which has west, side, bottom, east, lid",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn a_particle_outside_the_mesh_of_a_file_is_told_with_its_key() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &upright);
+    let away = "particles[0].place.grid.first=20.1 2.6 150 mm";
+    let (code, said) = calcine(folder.path(), &["check", "case.toml"], &[away]);
+    assert_eq!(code, Some(2), "{said}");
+    for words in [
+        "lies outside the mesh, at (0.0201, 0.0026, 0.15) m",
+        "place = ",
+        "check the units of both",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn a_mesh_of_a_file_in_millimetres_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    duct(folder.path(), &|at| upright(at).map(|x| 1000.0 * x));
+    let place = "particles[0].place.grid.first=20.1 2.6 10.3 m";
+    let (code, said) = calcine(folder.path(), &["check", "case.toml"], &[place]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("the mesh measures 60 x 10 x 100 m") && said.contains("transformPoints"),
+        "{said}"
+    );
 }

@@ -5,6 +5,7 @@ use std::fs;
 
 use calcine::case::model::ToleranceBand;
 use calcine::compare::{Agreement, CompareError, compare};
+use calcine_coupler::time::Ticks;
 
 use crate::support::fake;
 
@@ -174,6 +175,30 @@ fn runs_that_differ_by_less_than_the_bands_agree() {
             .table()
             .contains("2 runs agree within the case's bands.")
     );
+}
+
+#[test]
+fn runs_that_stopped_early_do_not_agree_in_words_or_by_the_verdict() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mut case = fake::case();
+    let runs = [("native", 0.0), ("other", 0.25)].map(|(name, shift)| {
+        let out = scratch.path().join(name);
+        fake::run(&case, &out, shift);
+        (name.to_owned(), out)
+    });
+    case.time.end = Ticks::from_seconds(2.0 * case.time.end.seconds()).unwrap();
+    let comparison = compare(&case, &runs).unwrap();
+    assert!(!comparison.agrees);
+    let table = comparison.table();
+    assert!(!table.contains("runs agree"), "{table}");
+    let words = "2 runs do not agree: their differences are within the case's bands, but not every run counts.";
+    assert!(table.contains(words), "{table}");
+    assert!(table.contains("Stopped early: native, other"), "{table}");
+    let page = comparison
+        .write(&scratch.path().join("comparison"))
+        .unwrap();
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains(">stopped early</span>"), "{page}");
 }
 
 #[test]

@@ -81,6 +81,7 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
                 // Five windows at its AF of 678: the burners open at 20 s.
                 true if named(&case) == "shaft-furnace" => ("liggghts", "time.end=34 s"),
                 true => ("liggghts", "time.end=0.05 s"),
+                false if named(&case) == "pipe" => (particles, "time.end=6 s"),
                 false if has_parcels(&case) => ("native", "time.end=0.05 s"),
                 false if steps(&case) => (particles, "time.end=100 s"),
                 false => (particles, "time.end=8 s"),

@@ -2,6 +2,8 @@
 
 use clap::ValueEnum;
 
+use crate::case::model::Case;
+
 /// Who computes the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum GasBackend {
@@ -57,6 +59,14 @@ impl Pairing {
             particles: ParticleBackend::Liggghts,
         },
     ];
+
+    /// Who has the particles of a case: without any there is nothing for a program to move, and Calcine keeps the empty list.
+    pub fn particles_of(self, case: &Case) -> ParticleBackend {
+        match case.particles.is_empty() {
+            true => ParticleBackend::Native,
+            false => self.particles,
+        }
+    }
 
     /// The name as `compare --pairings` takes it, for example `openfoam+native`.
     pub fn name(self) -> String {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use calcine_coupler::coordinator::{Origin, RunError};
-use calcine_coupler::mapping::{Mapper, Method};
+use calcine_coupler::mapping::{Mapper, MappingError, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::periodic::axis_name;
 use calcine_coupler::mesh::zone::Zone;
@@ -61,7 +61,8 @@ impl PreparedCase {
         let radii = &setup.radius;
         Ok(Self {
             mesh,
-            mean_diameter: 2.0 * radii.iter().sum::<f64>() / radii.len() as f64,
+            // Zero without particles.
+            mean_diameter: 2.0 * radii.iter().sum::<f64>() / radii.len().max(1) as f64,
             particles: setup,
             temperature,
             notes,
@@ -97,7 +98,10 @@ impl PreparedCase {
         let mapper = Mapper::new(&*self.mesh);
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)
-            .map_err(RunError::from)?;
+            .map_err(|error| self.outside(case, error))?;
+        if volumes.is_empty() {
+            return Ok(BedPacking::NONE);
+        }
         let solid_fraction =
             median_solid_fraction(&self.mesh, &weights, &volumes, REACH * self.mean_diameter);
         let smoother = smoother(case, self)?;
@@ -111,6 +115,25 @@ impl PreparedCase {
             solid_fraction,
             moved_share: operator.moved_share(),
         })
+    }
+
+    /// What is told of particles that cannot be mapped: of one outside the mesh, whose it is.
+    fn outside(&self, case: &Case, error: MappingError) -> AssemblyError {
+        let MappingError::Outside { particle, position } = error else {
+            return RunError::from(error).into();
+        };
+        let population = self.particles.population.get(particle);
+        let population = population.map_or(0, |index| *index as usize);
+        PlaceError::Outside {
+            id: self.particles.id.get(particle).copied().unwrap_or(0),
+            index: population,
+            name: case
+                .particles
+                .get(population)
+                .map_or(String::new(), |one| one.name.clone()),
+            at: position,
+        }
+        .into()
     }
 }
 

@@ -54,7 +54,7 @@ pub fn write_inputs(
         .write(&target)?;
         written.push(target);
     }
-    if pairing.particles == ParticleBackend::Liggghts {
+    if pairing.particles_of(case) == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
         let template = own_script(case)?;
         let inputs = liggghts_inputs(case, prepared, template.as_ref(), starts.particles.ranks);
@@ -84,10 +84,11 @@ pub fn native_parts(
     if pairing.gas == GasBackend::External && case.external_gas.is_none() {
         return Err(AssemblyError::NoExternalGas);
     }
-    if pairing.particles == ParticleBackend::External && case.external_particles.is_none() {
+    if pairing.particles_of(case) == ParticleBackend::External && case.external_particles.is_none()
+    {
         return Err(AssemblyError::NoExternalParticles);
     }
-    if pairing.particles == ParticleBackend::Native {
+    if pairing.particles_of(case) == ParticleBackend::Native {
         match &prepared.particles.motion {
             Motion::Parcels(_) => {
                 NativeParcels::new(Arc::clone(&prepared.mesh), &prepared.particles)?;
@@ -105,7 +106,7 @@ pub fn programs(case: &Case, pairing: Pairing) -> Result<Vec<PathBuf>, PartError
         let (solver, own) = openfoam::find(case.openfoam.solver)?;
         found.extend([solver, own.with_file_name(LIBRARY)]);
     }
-    if pairing.particles == ParticleBackend::Liggghts {
+    if pairing.particles_of(case) == ParticleBackend::Liggghts {
         found.push(liggghts::find()?);
     }
     if pairing.particles == ParticleBackend::Openfoam {
@@ -130,6 +131,9 @@ fn own_script(case: &Case) -> Result<Option<ScriptTemplate>, PartError> {
 
 /// What LIGGGHTS would not take of the case or of the user's own script, for `calcine check`.
 pub fn check_for_liggghts(case: &Case, prepared: &PreparedCase) -> Result<(), PartError> {
+    if case.particles.is_empty() {
+        return Ok(());
+    }
     let template = own_script(case)?;
     let inputs = liggghts_inputs(
         case,
@@ -258,7 +262,7 @@ impl Assembly<'_> {
     ) -> Result<Box<dyn Particles>, AssemblyError> {
         let from = self.from.map(|folder| folder.join("particles"));
         let setup = &self.prepared.particles;
-        match self.settings.pairing.particles {
+        match self.settings.pairing.particles_of(self.case) {
             ParticleBackend::Native if matches!(setup.motion, Motion::Parcels(_)) => {
                 let mut parcels = NativeParcels::new(Arc::clone(&self.prepared.mesh), setup)?;
                 if let Some(folder) = from {

@@ -7,6 +7,7 @@ use calcine_coupler::mesh::periodic::axis_name;
 use calcine_coupler::mesh::polymesh::{self, PatchType};
 use calcine_coupler::setup::{GasPatch, WallVelocity};
 
+use super::mesh_shape;
 use super::meshing::{MeshingError, mesh};
 use super::model::{Case, MeshSpec, MotionSpec};
 use super::units::short;
@@ -14,6 +15,7 @@ use super::units::short;
 /// Generates or reads the gas mesh of a case, joins its periodic patches, and checks the sides of plane and axisymmetric flows.
 pub fn mesh_of(case: &Case) -> Result<Mesh, MeshingError> {
     let plain = mesh(&case.mesh)?;
+    unmatched(case, &plain)?;
     if let MeshSpec::PolyMesh(folder) = &case.mesh {
         agree(case, folder, &polymesh::patch_types(folder)?)?;
     }
@@ -30,6 +32,9 @@ pub fn mesh_of(case: &Case) -> Result<Mesh, MeshingError> {
         joined.empty_axis(&named(case, &GasPatch::Empty))?,
         joined.wedge_slice(&named(case, &GasPatch::Wedge))?,
     );
+    if let Some(wrong) = mesh_shape::closed_pieces(case, &joined) {
+        return Err(MeshingError::Pieces(wrong));
+    }
     let moves = |motion: &MotionSpec| *motion != MotionSpec::Frozen;
     let moving = case.particles.iter().find(|one| moves(&one.motion));
     let flat = match (empty, wedge) {
@@ -52,6 +57,66 @@ pub fn mesh_of(case: &Case) -> Result<Mesh, MeshingError> {
         });
     }
     Ok(joined)
+}
+
+/// Refuses patches without a condition, and conditions without a patch: all of them at once.
+fn unmatched(case: &Case, mesh: &Mesh) -> Result<(), MeshingError> {
+    if case.gas_held || case.gas.properties.is_vacuum() {
+        return Ok(());
+    }
+    let stated = |name: &str| case.gas.patches.iter().any(|(own, _)| own == name);
+    let filled = mesh.patches().iter().filter(|patch| patch.count > 0);
+    let lacking: Vec<&str> = filled
+        .map(|patch| patch.name.as_str())
+        .filter(|name| !stated(name))
+        .collect();
+    let conditions = case.gas.patches.iter().map(|(name, _)| name.as_str());
+    let strange: Vec<&str> = conditions
+        .filter(|name| mesh.patch(name).is_none())
+        .collect();
+    let (mut facts, mut remedies) = (Vec::new(), Vec::new());
+    if !lacking.is_empty() {
+        facts.push(match lacking[..] {
+            [name] => format!("patch `{name}` of the mesh has no boundary condition"),
+            _ => format!(
+                "{} patches of the mesh have no boundary condition: {}",
+                lacking.len(),
+                quoted("", &lacking)
+            ),
+        });
+        let each = if lacking.len() == 1 { "it" } else { "each" };
+        remedies.push(format!(
+            "give {each} one in {}",
+            quoted("gas.patch.", &lacking)
+        ));
+    }
+    if !strange.is_empty() {
+        let present: Vec<&str> = mesh.patches().iter().map(|one| one.name.as_str()).collect();
+        let name = if strange.len() == 1 { "names" } else { "name" };
+        facts.push(format!(
+            "{} {name} no patch of the mesh, which has {}",
+            quoted("gas.patch.", &strange),
+            present.join(", ")
+        ));
+        remedies.push("rename what has no patch, or remove it".to_owned());
+    }
+    match facts.is_empty() {
+        true => Ok(()),
+        false => Err(MeshingError::Patches(format!(
+            "{}; {}",
+            facts.join(", and "),
+            remedies.join(", and ")
+        ))),
+    }
+}
+
+/// Names with what stands before each, as keys.
+fn quoted(before: &str, names: &[&str]) -> String {
+    let names: Vec<String> = names
+        .iter()
+        .map(|name| format!("`{before}{name}`"))
+        .collect();
+    names.join(", ")
 }
 
 /// Names of the patches with this condition.

@@ -7,8 +7,8 @@ use calcine_coupler::physics::reaction::Arrhenius;
 use super::model::Case;
 use super::units::listed;
 use super::{
-    expectations, idle_cautions, patch_cautions, reach_cautions, schedules, size_cautions,
-    temperature_cautions, time_cautions, used_up, wall_cautions,
+    accuracy_cautions, expectations, idle_cautions, patch_cautions, reach_cautions, schedules,
+    size_cautions, temperature_cautions, time_cautions, used_up, wall_cautions,
 };
 
 /// Energies in J/mol that bonds have, no activation energy is above: that of carbon monoxide is 1072 kJ/mol.
@@ -30,6 +30,7 @@ pub fn cautions(case: &Case) -> Vec<String> {
     all.extend(patch_cautions::all(case));
     all.extend(wall_cautions::all(case));
     all.extend(time_cautions::all(case));
+    all.extend(accuracy_cautions::tolerances(case));
     all.extend(idle_cautions::all(case));
     all
 }

@@ -121,10 +121,16 @@ pub fn check_report(
     for line in directions.into_iter().chain(shape) {
         let _ = writeln!(text, "                 {line}");
     }
-    let _ = writeln!(
-        text,
-        "  bed            {particles} particles, void fraction {void_fraction:.3}"
-    );
+    let _ = match case.particles.is_empty() {
+        true => writeln!(
+            text,
+            "  bed            none: the gas is computed alone, since the case has no [[particles]]"
+        ),
+        false => writeln!(
+            text,
+            "  bed            {particles} particles, void fraction {void_fraction:.3}"
+        ),
+    };
     for line in files(case) {
         let _ = writeln!(text, "                 {line}");
     }

@@ -8,6 +8,7 @@ use calcine_coupler::physics::pressure_drop::{ergun, minimum_fluidisation};
 use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{Convection, GasPatch, ParticleSetup, Schedule};
 
+use super::accuracy_cautions;
 use super::model::{Case, MotionSpec};
 use super::packed::BedPacking;
 use super::patch_cautions::centre;
@@ -150,7 +151,9 @@ impl FlowNumbers {
 
     /// What of it is to be warned of.
     pub(super) fn warnings(&self, case: &Case) -> Vec<String> {
-        let mut all = Vec::new();
+        let mut all: Vec<String> = accuracy_cautions::courant(case, self.courant)
+            .into_iter()
+            .collect();
         if let Some(mach) = self.mach.filter(|mach| *mach > LOW_MACH) {
             all.push(format!(
                 "the gas flows at a Mach number of {} (inlets of {} m/s at most), above {LOW_MACH}: its density follows its velocity, which \

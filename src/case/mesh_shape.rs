@@ -104,23 +104,63 @@ pub(super) fn pieces(mesh: &Mesh) -> Vec<String> {
     if pieces.len() < 2 {
         return Vec::new();
     }
+    vec![format!(
+        "{} pieces that no face joins, between which no gas passes: {}",
+        pieces.len(),
+        listed(mesh, &pieces)
+    )]
+}
+
+/// Pieces by their cells, places and patches, of very many the first.
+fn listed(mesh: &Mesh, pieces: &[MeshPiece]) -> String {
     let told = |piece: &MeshPiece| {
         let at = piece.centre;
-        let (cells, place) = (
+        let names = piece.patches.iter();
+        let names: Vec<&str> = names.map(|&k| mesh.patches()[k].name.as_str()).collect();
+        format!(
+            "{} cells about ({:.4}, {:.4}, {:.4}) m with the patches {}",
             piece.cells,
-            format!("({:.4}, {:.4}, {:.4}) m", at.x, at.y, at.z),
-        );
-        format!("{cells} cells about {place}")
+            at.x,
+            at.y,
+            at.z,
+            names.join(", ")
+        )
     };
     let mut list: Vec<String> = pieces.iter().take(LISTED).map(told).collect();
     if pieces.len() > LISTED {
         list.push(format!("{} more", pieces.len() - LISTED));
     }
-    vec![format!(
-        "{} pieces that no face joins, between which no gas passes: {}",
-        pieces.len(),
-        list.join(", ")
-    )]
+    list.join("; ")
+}
+
+/// What is wrong with a mesh of several pieces, of which one has no patch with a pressure: the gases have one level of pressure for the
+/// whole domain, and a piece of its own has none (docs/theory.md, BND-4).
+pub(super) fn closed_pieces(case: &Case, mesh: &Mesh) -> Option<String> {
+    let pieces = mesh.pieces();
+    if pieces.len() < 2 || case.gas_held || case.gas.properties.is_vacuum() {
+        return None;
+    }
+    let open = |patch: &usize| {
+        let name = &mesh.patches()[*patch].name;
+        let mut conditions = case.gas.patches.iter();
+        conditions.any(|(own, condition)| own == name && condition.is_open())
+    };
+    let shut: Vec<MeshPiece> = pieces
+        .iter()
+        .filter(|piece| !piece.patches.iter().any(open))
+        .cloned()
+        .collect();
+    (!shut.is_empty()).then(|| {
+        format!(
+            "the mesh has {} pieces that no face joins, of which {} {} no `outlet` or `opening`: {}: the level of pressure there is not \
+             known; give each piece an outlet or an opening of its own, join the pieces where their faces should be one (`checkMesh` \
+             counts regions), or leave these cells out of the mesh and run them by themselves",
+            pieces.len(),
+            shut.len(),
+            if shut.len() == 1 { "has" } else { "have" },
+            listed(mesh, &shut)
+        )
+    })
 }
 
 fn place(one: &InCell) -> String {

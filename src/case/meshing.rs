@@ -76,6 +76,12 @@ pub enum MeshingError {
         /// In degrees.
         angle: f64,
     },
+    /// Pieces that nothing joins, without a level of pressure.
+    #[error("{0}")]
+    Pieces(String),
+    /// Patches and conditions that do not go together.
+    #[error("{0}")]
+    Patches(String),
     /// Particles that move in a plane or axisymmetric flow.
     #[error(
         "the gas is one cell deep between patches that are `{kind}`, and `{population}` moves: particles move in three dimensions; use \

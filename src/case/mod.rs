@@ -1,5 +1,6 @@
 //! Case files: TOML to a checked [`model::Case`].
 
+mod accuracy_cautions;
 mod bed;
 mod bodies;
 mod boundaries;
@@ -8,6 +9,7 @@ pub mod cautions;
 mod check;
 mod conduction_step;
 pub mod contacts;
+mod duct_flow;
 pub mod expectations;
 mod fall;
 mod flow_numbers;

@@ -19,6 +19,13 @@ pub struct BedPacking {
 }
 
 impl BedPacking {
+    /// Without particles.
+    pub const NONE: Self = Self {
+        void_fraction: 1.0,
+        solid_fraction: 0.0,
+        moved_share: 0.0,
+    };
+
     /// A warning where the smoother spreads the packing itself.
     pub(super) fn warning(&self, case: &Case) -> Option<String> {
         let most = case.coupling.max_solid_fraction;

@@ -58,7 +58,7 @@ pub fn particles(case: &Case, periodicity: &Periodicity) -> Result<InitialPartic
             placed.temperature.push(sphere.temperature);
         }
     }
-    if setup.id.is_empty() {
+    if setup.id.is_empty() && !case.particles.is_empty() {
         let names = case.particles.iter();
         let names = names.map(|one| match &one.place {
             PlacementSpec::File { path, .. } => format!("\"{}\" ({})", one.name, path.display()),

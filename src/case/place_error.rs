@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use calcine_coupler::packing::PackingError;
+use calcine_coupler::physics::Vec3;
 use thiserror::Error;
 
 use super::contacts::ContactsError;
@@ -78,6 +79,22 @@ pub enum PlaceError {
         /// The narrowest extent of the mesh in m.
         width: f64,
     },
+    /// A particle whose centre lies in no cell.
+    #[error(
+        "particle {id} of \"{name}\" lies outside the mesh, at ({}, {}, {}) m; keep its place, a region or a grid, within the cells, and check the \
+         units of both (`check` prints from where to where a mesh of a file reaches)",
+        shown(at.x), shown(at.y), shown(at.z)
+    )]
+    Outside {
+        /// Its id.
+        id: u64,
+        /// Index of its population.
+        index: usize,
+        /// Its population.
+        name: String,
+        /// Its centre in m.
+        at: Vec3,
+    },
     /// A packing or a distribution of sizes that cannot be made.
     #[error("population \"{name}\": {cause}")]
     Packing {
@@ -136,6 +153,7 @@ impl PlaceError {
                 } => format!("particles[{index}].diameter"),
                 _ => format!("particles[{index}].place"),
             },
+            Self::Outside { index, .. } => format!("particles[{index}].place"),
             Self::Overlap { names, .. } => of_population(case, &names[1], "place"),
             Self::InWall { name, .. } => of_population(case, name, "place"),
             Self::TooWide { name, .. } => of_population(case, name, "diameter"),

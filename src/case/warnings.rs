@@ -11,8 +11,8 @@ use super::model::Case;
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::{
-    buoyancy, contacts, flow_time, idle_cautions, mesh_shape, overlap, patch_cautions, resolved,
-    size_cautions, temperature_cautions,
+    accuracy_cautions, buoyancy, contacts, duct_flow, flow_time, idle_cautions, mesh_shape,
+    overlap, patch_cautions, resolved, size_cautions, temperature_cautions,
 };
 
 /// Warnings about a case with its mesh, and its particles with their temperatures in K and what was noted of their files, in a fixed
@@ -40,6 +40,8 @@ pub fn warnings(
     all.extend(size_cautions::pores(case));
     all.extend(resolved::warnings(case));
     all.extend(size_cautions::wide_mesh(mesh, setup));
+    all.extend(accuracy_cautions::extents(case, mesh, setup));
+    all.extend(duct_flow::turbulent_inlet(case, mesh, setup.id.len()));
     all.extend(mesh_shape::report(mesh).1);
     all.extend(contacts::warnings(case, mesh, setup));
     let fastest = FastestContact::of(case, setup, mesh.periodicity());

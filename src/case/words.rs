@@ -275,5 +275,5 @@ case_words! {
         "count" => Discharged::Count,
         "residence_time" => Discharged::ResidenceTime,
     }
-    Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max, "sum" => Statistic::Sum, "deviation" => Statistic::Deviation }
+    Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max, "sum" => Statistic::Sum, "deviation" => Statistic::Deviation, "mass-flow-mean" => Statistic::MassFlowMean }
 }

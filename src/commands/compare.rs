@@ -84,7 +84,13 @@ fn pairings(text: &str) -> Result<Chosen, String> {
 /// with the reason.
 fn able_ones(valid: &ValidCase, chosen: &Chosen) -> Result<Vec<Pairing>, Failure> {
     let (mut kept, mut code, mut reasons) = (Vec::new(), exit::CASE, String::new());
-    for &pairing in &chosen.pairings {
+    // Without particles pairings of one gas are one run.
+    let same = |pairing: &Pairing| pairing.particles != pairing.particles_of(&valid.case);
+    let meant = chosen
+        .pairings
+        .iter()
+        .filter(|one| chosen.named || !same(one));
+    for &pairing in meant {
         match able(valid, pairing) {
             Ok(()) => kept.push(pairing),
             Err(failure) => {

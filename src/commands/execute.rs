@@ -105,7 +105,7 @@ pub(super) fn execute(
             let summary = summary.as_ref();
             Ok(Done {
                 code,
-                text: summary.map(closing).unwrap_or_default(),
+                text: summary.map(closing).unwrap_or_default() + alone(case),
             })
         }
         Ok(Ending::Checkpointed(path)) => {
@@ -120,6 +120,14 @@ pub(super) fn execute(
             })
         }
         Err(failure) => Err(failed(out, &failure)),
+    }
+}
+
+/// The line of a run without particles.
+fn alone(case: &Case) -> &'static str {
+    match case.particles.is_empty() {
+        true => "\n  no particles: the gas was computed alone",
+        false => "",
     }
 }
 

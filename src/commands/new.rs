@@ -62,6 +62,7 @@ macro_rules! shipped {
 
 shipped! {
     HeatedColumn "heated-column" "Column of ten spheres heated by hot air.";
+    Pipe "pipe" "The gas alone: air that is heated in a pipe, laminar.";
     HeatedBed "heated-bed" "Random packing in a tube heated by hot air.";
     PackedColumn "packed-column" "Pressure drop of air through a tube of 14 mm spheres.";
     PurgedBed "purged-bed" "Carbon dioxide purged from a warm bed by nitrogen.";

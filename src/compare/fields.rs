@@ -8,6 +8,7 @@ use super::common;
 use super::error::CompareError;
 use super::quantities::{common_times, exceeds, words};
 use super::source::Source;
+use super::spread::Spread;
 use crate::case::model::{Case, FieldBand, Measure, ToleranceBand};
 use crate::report::plot::between;
 use crate::results::read::{self, Arrays};
@@ -38,8 +39,10 @@ pub struct FieldDifference {
     pub unit: String,
     /// Every pair of runs.
     pub pairs: Vec<Norms>,
-    /// Largest minus smallest value over all runs, places and times; vectors by components.
+    /// Largest minus smallest value over all runs, places and times, zero where that is round-off; vectors by components.
     pub span: f64,
+    #[serde(skip)]
+    pub(super) spread: Spread,
     /// The allowed maximum in words, if the case states one.
     pub band: Option<String>,
     /// Whether the largest of all pairs is allowed.
@@ -119,7 +122,7 @@ pub(super) fn differences(
             None => list.push(FieldDifference {
                 band: Some("not written".into()),
                 verdict: Agreement::Outside,
-                ..finish(&band.field, "cell", "1", Vec::new(), (0.0, 0.0))
+                ..finish(&band.field, "cell", "1", Vec::new(), Spread::of([]))
             }),
         }
     }
@@ -149,7 +152,7 @@ fn judge(field: &mut FieldDifference, band: &FieldBand) {
         .filter_map(|(what, band, found)| Some((what, band?, found)));
     for (what, band, found) in stated {
         let allowed = match band {
-            ToleranceBand::Relative(share) => share * field.span,
+            ToleranceBand::Relative(share) => field.spread.allowance(share),
             ToleranceBand::Absolute(distance) => distance,
         };
         told.push(format!("{} {what}", words(band, &field.unit)));
@@ -177,7 +180,7 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
     if runs.iter().any(Vec::is_empty) {
         return None;
     }
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut spread = Spread::NONE;
     let mut sums = pairs(sources);
     for time in common_times(sources) {
         let sound = |source: &Source| {
@@ -196,7 +199,7 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
                 })
                 .collect();
             for &value in &values {
-                (low, high) = (low.min(value), high.max(value));
+                spread.add(value);
             }
             let gone: Vec<bool> = values
                 .iter()
@@ -207,7 +210,7 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
             add_track(&values, &gone, id, time, &mut sums);
         }
     }
-    let field = finish("particles.temperature", "particle", "K", sums, (low, high));
+    let field = finish("particles.temperature", "particle", "K", sums, spread);
     Some(judged(field, single_particle_band(case)))
 }
 
@@ -277,14 +280,15 @@ fn finish(
     per: &'static str,
     unit: &str,
     sums: Vec<(usize, usize, Sums)>,
-    range: (f64, f64),
+    spread: Spread,
 ) -> FieldDifference {
     FieldDifference {
         name: name.into(),
         per,
         unit: unit.into(),
         pairs: sums.into_iter().map(|(_, _, sum)| sum.finish()).collect(),
-        span: range.1 - range.0,
+        span: spread.span(),
+        spread,
         band: None,
         verdict: Agreement::None,
     }
@@ -326,7 +330,7 @@ fn snapshots(
                     found.push(Found {
                         name: name.clone(),
                         sums: pairs(sources),
-                        range: (f64::INFINITY, f64::NEG_INFINITY),
+                        spread: Spread::NONE,
                     });
                     found.len() - 1
                 }
@@ -336,7 +340,7 @@ fn snapshots(
     }
     let named = |field: Found| {
         let name = format!("{group}.{}", field.name);
-        finish(&name, per, unit(&field.name), field.sums, field.range)
+        finish(&name, per, unit(&field.name), field.sums, field.spread)
     };
     Ok(found.into_iter().map(named).collect())
 }
@@ -345,8 +349,8 @@ fn snapshots(
 struct Found {
     name: String,
     sums: Vec<(usize, usize, Sums)>,
-    /// Smallest and largest value so far.
-    range: (f64, f64),
+    /// Of the values so far.
+    spread: Spread,
 }
 
 /// Adds one snapshot of all runs to a field.
@@ -356,7 +360,7 @@ fn add(
     time: f64,
     field: &mut Found,
 ) -> Result<(), CompareError> {
-    let Found { name, sums, range } = field;
+    let Found { name, sums, spread } = field;
     let reference = &arrays[0][name.as_str()];
     let ids = arrays[0].get("id").map(|array| &array.values);
     let mut lists = Vec::new();
@@ -374,7 +378,7 @@ fn add(
             });
         }
         for &value in values {
-            *range = (range.0.min(value), range.1.max(value));
+            spread.add(value);
         }
         lists.push(values);
     }
@@ -421,7 +425,13 @@ mod tests {
             ..Norms::default()
         };
         let judged = |largest, root_mean_square| {
-            let mut field = finish("gas.temperature", "cell", "K", Vec::new(), (300.0, 400.0));
+            let mut field = finish(
+                "gas.temperature",
+                "cell",
+                "K",
+                Vec::new(),
+                Spread::of([300.0, 400.0]),
+            );
             field.pairs = vec![norms(1.0, 0.5), norms(4.0, 0.1)];
             let band = FieldBand {
                 field: field.name.clone(),

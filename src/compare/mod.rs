@@ -10,6 +10,7 @@ mod fields;
 mod page;
 mod quantities;
 mod source;
+mod spread;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -65,6 +66,13 @@ impl Comparison {
         let quantities = self.quantities.iter().map(|one| one.verdict);
         let mut all = quantities.chain(self.fields.iter().map(|field| field.verdict));
         all.any(|verdict| verdict != Agreement::None)
+    }
+
+    /// True where some difference is outside its band.
+    pub(super) fn has_outside(&self) -> bool {
+        let quantities = self.quantities.iter().map(|one| one.verdict);
+        let mut all = quantities.chain(self.fields.iter().map(|field| field.verdict));
+        all.any(|verdict| verdict == Agreement::Outside)
     }
 
     /// The tables for a terminal.

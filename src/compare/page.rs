@@ -14,7 +14,9 @@ pub(super) fn render(comparison: &Comparison) -> String {
     let (class, word) = match comparison.agrees {
         true if !comparison.has_bands() => ("none", "no bands stated"),
         true => ("pass", "the runs agree"),
-        false => ("fail", "outside its bands"),
+        false if comparison.has_outside() => ("fail", "outside its bands"),
+        false if comparison.runs.iter().all(|run| run.complete) => ("fail", "not converged"),
+        false => ("fail", "stopped early"),
     };
     let badge = format!("<span class=\"badge {class}\">{word}</span>");
     let names: Vec<&str> = comparison

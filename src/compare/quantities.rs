@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::agreement::Agreement;
 use super::source::Source;
+use super::spread::Spread;
 use crate::case::model::{Case, Quantity, ToleranceBand};
 use crate::report::number::{figure, span, with_unit};
 use crate::report::plot::between;
@@ -31,7 +32,7 @@ pub struct QuantityDifference {
     pub largest: Extreme,
     /// The difference at the end.
     pub end: Extreme,
-    /// Largest minus smallest value over all runs and times.
+    /// Largest minus smallest value over all runs and times, zero where that is round-off.
     pub span: f64,
     /// The allowed difference in words, if the case states one.
     pub band: Option<String>,
@@ -50,7 +51,7 @@ pub(super) fn differences(case: &Case, sources: &[Source]) -> Vec<QuantityDiffer
 
 fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
     let column = format!("quantities.{}", quantity.name);
-    let mut all = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut all = Spread::NONE;
     let mut largest = Extreme {
         difference: 0.0,
         at_s: 0.0,
@@ -76,7 +77,8 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
             })
             .collect();
         let (low, high) = extremes(&values);
-        all = (all.0.min(low), all.1.max(high));
+        all.add(low);
+        all.add(high);
         end = Extreme {
             difference: high - low,
             at_s: time,
@@ -105,7 +107,7 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         end_values,
         largest,
         end,
-        span: all.1 - all.0,
+        span: all.span(),
         band: quantity.agree.map(|band| {
             let band = words(band, quantity.unit);
             match quantity.agree_from {

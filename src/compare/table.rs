@@ -98,10 +98,13 @@ fn fields(comparison: &Comparison) -> Vec<Vec<String>> {
     rows
 }
 
-/// A share in per cent.
+/// A share in per cent; none of a whole that is zero: what hardly varies has no span.
 pub(super) fn percent(part: f64, whole: f64) -> String {
     if part == 0.0 {
         return "0 %".into();
+    }
+    if whole == 0.0 {
+        return "–".into();
     }
     format!("{} %", figure(100.0 * part / whole, 2))
 }
@@ -129,9 +132,14 @@ pub(super) fn verdict(comparison: &Comparison) -> String {
             "{} runs, no bands stated: add `agree` to a quantity to have them judged.",
             comparison.runs.len()
         )
-    } else if outside.is_empty() {
+    } else if comparison.agrees {
         format!(
             "{} runs agree within the case's bands.",
+            comparison.runs.len()
+        )
+    } else if outside.is_empty() {
+        format!(
+            "{} runs do not agree: their differences are within the case's bands, but not every run counts.",
             comparison.runs.len()
         )
     } else {
@@ -155,7 +163,11 @@ pub(super) fn verdict(comparison: &Comparison) -> String {
         );
     }
     if !short.is_empty() {
-        let _ = write!(text, " Stopped early: {}.", short.join(", "));
+        let _ = write!(
+            text,
+            " Stopped early: {}: let them go on to the end (`calcine resume DIR`).",
+            short.join(", ")
+        );
     }
     text + "\n"
 }

@@ -4,6 +4,7 @@ use calcine_coupler::observer::CommittedState;
 use calcine_coupler::outflows::OutletTotals;
 use calcine_coupler::part::PatchFlow;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::time::Ticks;
 use serde::{Deserialize, Serialize};
 
@@ -107,6 +108,29 @@ pub(super) fn flow(
         Passing::Species => flow.species.get(column?).copied(),
     };
     passed(moment, patch).and_then(of).unwrap_or(f64::NAN)
+}
+
+/// Mean by mass flow of what flows through a patch over the last window, of the net flow where some of it comes back: of a mass
+/// fraction Σ φ Y/Σ φ; of the temperature that of gas with this composition and the enthalpy Σ φ h/Σ φ (mixing-cup temperature).
+/// NaN before the first window, and where no gas flows.
+pub(super) fn flow_mean(
+    moment: &CommittedState<'_>,
+    gas: &GasModel,
+    patch: &str,
+    (field, column): (&str, Option<usize>),
+    guess: f64,
+) -> f64 {
+    let Some(flow) = passed(moment, patch).filter(|flow| flow.mass != 0.0) else {
+        return f64::NAN;
+    };
+    let composition: Vec<f64> = flow.species.iter().map(|one| one / flow.mass).collect();
+    match field {
+        "temperature" => gas.temperature(flow.heat / flow.mass, &composition, guess),
+        _ => {
+            let own = column.and_then(|column| composition.get(column));
+            own.copied().unwrap_or(f64::NAN)
+        }
+    }
 }
 
 /// Force in N of the gas on a wall along a direction; NaN before the first window.

@@ -39,7 +39,8 @@ fn weighted(which: Statistic, pairs: impl Iterator<Item = (f64, f64)> + Clone) -
     };
     let total = || pairs.clone().map(|pair| pair.1).sum::<f64>();
     match which {
-        Statistic::Mean => sum() / total(),
+        // Values without a flow count by their weights.
+        Statistic::Mean | Statistic::MassFlowMean => sum() / total(),
         Statistic::Min => values().fold(f64::NAN, f64::min),
         Statistic::Max => values().fold(f64::NAN, f64::max),
         // That of no values is −0.
@@ -109,6 +110,15 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, run: Ru
             let of = (field.as_str(), None);
             let mean = |patch| weighted(Statistic::Mean, on_patch(moment, of, patch).into_iter());
             mean(&patches[0]) - mean(&patches[1])
+        }
+        Measure::Gas {
+            field,
+            over: GasPlace::Patch(patch),
+            statistic: Statistic::MassFlowMean,
+        } => {
+            let of = (field.as_str(), quantity.column);
+            let by_area = weighted(Statistic::Mean, on_patch(moment, of, patch).into_iter());
+            passages::flow_mean(moment, &case.gas.properties, patch, of, by_area)
         }
         Measure::Gas {
             field,

@@ -50,7 +50,7 @@ pub fn cut(mesh: &Mesh, cuts: &[Cut]) -> Result<Mesh, MeshError> {
     };
     let bodies: Vec<Option<usize>> = (0..mesh.cells()).map(body).collect();
     let made = Mesh::new(without(mesh, &bodies, &names)?)?;
-    let Some(apart) = made.pieces().get(1).copied() else {
+    let Some(apart) = made.pieces().into_iter().nth(1) else {
         return Ok(made);
     };
     let at = apart.centre;

@@ -64,18 +64,28 @@ pub enum MeshError {
     #[error("the mesh is inconsistent: {0}")]
     Inconsistent(String),
     /// A cell without positive volume.
-    #[error("cell {cell} has a volume of {volume} m^3")]
+    #[error(
+        "cell {cell} about ({:.6}, {:.6}, {:.6}) m has a volume of {volume} m^3; look there for points that are \
+         out of place or faces that point inwards (`checkMesh` lists them)", at.x, at.y, at.z
+    )]
     Volume {
         /// Index of the cell.
         cell: usize,
+        /// Mean of the centres of its faces in m.
+        at: Vec3,
         /// Its volume in m³.
         volume: f64,
     },
     /// A cell whose faces do not close.
-    #[error("cell {cell} is open: its face areas sum to {gap} m^2")]
+    #[error(
+        "cell {cell} about ({:.6}, {:.6}, {:.6}) m is open: its face areas sum to {gap} m^2; look there for a face that is missing, doubled or \
+         turned around (`checkMesh` lists such cells)", at.x, at.y, at.z
+    )]
     Open {
         /// Index of the cell.
         cell: usize,
+        /// Mean of the centres of its faces in m.
+        at: Vec3,
         /// Magnitude of the sum of its face area vectors in m².
         gap: f64,
     },
@@ -166,11 +176,16 @@ impl Mesh {
                 area += outward.norm();
             }
             if volume.is_nan() || volume <= 0.0 {
-                return Err(MeshError::Volume { cell, volume });
+                return Err(MeshError::Volume {
+                    cell,
+                    at: estimate,
+                    volume,
+                });
             }
             if gap.norm() > 1e-6 * area {
                 return Err(MeshError::Open {
                     cell,
+                    at: estimate,
                     gap: gap.norm(),
                 });
             }
@@ -357,7 +372,16 @@ fn check(topology: &Topology) -> Result<usize, MeshError> {
         return wrong("a point's coordinate is not a finite number".into());
     }
     let mut next = internal;
-    for patch in &topology.patches {
+    for (place, patch) in topology.patches.iter().enumerate() {
+        if topology.patches[..place]
+            .iter()
+            .any(|other| other.name == patch.name)
+        {
+            return wrong(format!(
+                "two patches have the name `{}`; rename one, since conditions are given by name",
+                patch.name
+            ));
+        }
         if patch.start != next {
             return wrong(format!(
                 "patch `{}` starts at face {}, not {next}",

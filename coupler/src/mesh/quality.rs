@@ -2,7 +2,7 @@
 
 use calcine_physics::Vec3;
 
-use super::Mesh;
+use super::{Mesh, Patch};
 
 /// A value and the cell in which it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,12 +33,14 @@ pub struct MeshQuality {
 }
 
 /// Cells that faces join, and which no face joins to others.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MeshPiece {
     /// Number of its cells.
     pub cells: usize,
     /// Centre of the first of them in m.
     pub centre: Vec3,
+    /// Indices of the patches that its cells have faces on, in the order of the mesh.
+    pub patches: Vec<usize>,
 }
 
 impl Mesh {
@@ -62,13 +64,15 @@ impl Mesh {
 
     /// The pieces of a mesh in the order of their first cells; periodic planes join as faces do.
     pub fn pieces(&self) -> Vec<MeshPiece> {
-        let mut met = vec![false; self.cells];
+        const NONE: usize = usize::MAX;
+        let mut piece_of = vec![NONE; self.cells];
         let (mut pieces, mut open) = (Vec::new(), Vec::new());
         for first in 0..self.cells {
-            if met[first] {
+            if piece_of[first] != NONE {
                 continue;
             }
-            met[first] = true;
+            let own = pieces.len();
+            piece_of[first] = own;
             open.push(first);
             let mut cells = 0;
             while let Some(cell) = open.pop() {
@@ -76,14 +80,26 @@ impl Mesh {
                 let faces = self.faces_of(cell).iter();
                 let beyond = faces.filter_map(|&face| self.beyond(cell, face as usize));
                 for other in beyond.map(|beyond| beyond.cell) {
-                    if !met[other] {
-                        met[other] = true;
+                    if piece_of[other] == NONE {
+                        piece_of[other] = own;
                         open.push(other);
                     }
                 }
             }
             let centre = self.cell_centre[first];
-            pieces.push(MeshPiece { cells, centre });
+            pieces.push(MeshPiece {
+                cells,
+                centre,
+                patches: Vec::new(),
+            });
+        }
+        for (patch, faces) in self.patches().iter().map(Patch::faces).enumerate() {
+            for face in faces {
+                let piece = &mut pieces[piece_of[self.owner()[face] as usize]];
+                if piece.patches.last() != Some(&patch) {
+                    piece.patches.push(patch);
+                }
+            }
         }
         pieces
     }

@@ -21,7 +21,7 @@ const MEASURE: &[Key] = &[
     key("population", Text, Without("all"), "The population, with `particles`.", "\"beads\""),
     key("material", Text, Without("all"), "The material, with `particles`.", "\"glass\""),
     key("zone", Table(ZONE), Without("everywhere"), "Where the centres lie of the particles that count, with `particles`.", "{ box = { from = \"0 0 0 mm\", to = \"10 10 50 mm\" } }"),
-    key("statistic", Choice(words::<Statistic>), Without("with `probe` the mean, of `count` the sum"), "The statistic; required with `gas` and `particles`. `sum` is for `count`, `mass` and `kinetic_energy`; particles count by their weights, gas by its volume or area.", "\"mean\""),
+    key("statistic", Choice(words::<Statistic>), Without("with `probe` the mean, of `count` the sum"), "The statistic; required with `gas` and `particles`. `sum` is for `count`, `mass` and `kinetic_energy`; particles count by their weights, gas by its volume or area. `mass-flow-mean`, of `temperature` or `mass_fraction` with `patch`, is weighted by the mass flow through it (mixing-cup mean), the temperature by enthalpy.", "\"mean\""),
     key("particle", Choice(words::<ParticleField>), OneOf, "The value of one particle.", "\"temperature\""),
     key("number", Whole(1, MOST), Without("none"), "Which particle, counted from 1; required with `particle`.", "10"),
     key("wall_heat", Text, OneOf, "Heat in W from a wall of a temperature, or from `surroundings`, into the particles.", "\"hot\""),

@@ -204,6 +204,8 @@ pub enum Statistic {
     Sum,
     /// Standard deviation.
     Deviation,
+    /// Mean weighted by the mass flow through a patch (mixing-cup mean).
+    MassFlowMean,
 }
 
 /// A band around a value.

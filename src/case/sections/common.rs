@@ -26,6 +26,12 @@ pub(super) fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
     Some(names)
 }
 
+/// True of a case without particles, whose gas is computed alone.
+pub(super) fn gas_alone(root: &TableReader<'_>) -> bool {
+    let of_particles = ["particles", "feeds", "outlets", "motion", "reactions"];
+    !of_particles.into_iter().any(|key| root.has(key))
+}
+
 /// A path of the case file, absolute; an error where there is nothing.
 pub(super) fn existing(reader: &TableReader<'_>, key: &str, folder: &Path) -> Option<PathBuf> {
     let text = reader.text(key)?;

@@ -9,7 +9,7 @@ use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::GasStorage;
 
-use super::common::existing;
+use super::common::{existing, gas_alone};
 use super::zone::zones;
 use crate::case::model::{
     Coupling, ExternalProgram, ExternalSpec, Laws, MappingSpec, MotionSpec, Population, TimeSpec,
@@ -17,12 +17,16 @@ use crate::case::model::{
 use crate::case::table::TableReader;
 
 pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
-    let section = root.table("coupling")?;
+    let alone = gas_alone(root);
+    let section = match alone {
+        true => root.table_or_empty("coupling")?,
+        false => root.table("coupling")?,
+    };
     let parcels = root.has("motion") && root.table("motion").is_some_and(|one| one.has("parcels"));
-    if !parcels {
+    if !parcels && !alone {
         section.need("mapping");
     }
-    let implied = parcels && !section.has("mapping");
+    let implied = (parcels || alone) && !section.has("mapping");
     let mapping = section.choice("mapping");
     let smoother = section.table_or_empty("smoother")?;
     let max_solid_fraction = smoother.number("max_solid_fraction");
@@ -39,15 +43,17 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     let deadline = section.wall_time("deadline");
     section.finish();
     Some(Coupling {
-        mapping: if implied {
-            MappingSpec::Linear
-        } else {
-            mapping?
+        mapping: match implied {
+            // Nothing is mapped where there are no particles.
+            true if alone => MappingSpec::Centroid,
+            true => MappingSpec::Linear,
+            false => mapping?,
         },
         max_solid_fraction: max_solid_fraction?,
         excluded,
         smoother_tolerance: smoother_tolerance?,
-        diffusion_length,
+        // Without particles there is no diameter to take it from.
+        diffusion_length: diffusion_length.or(alone.then_some(0.0)),
         exchange_tolerance: exchange_tolerance?,
         exchange_attempts: exchange_attempts?,
         exchange_cuts: exchange_cuts?,

@@ -1,13 +1,15 @@
 //! `[laws]`: each is stated, none has a default.
 
+use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::film::{FilmDiffusivity, FilmTemperature, FilmTheory, StefanFlow};
 use calcine_coupler::physics::heat_transfer::HeatTransfer;
-use calcine_coupler::physics::law::LawChoice;
+use calcine_coupler::physics::law::{LawChoice, NONE};
 use calcine_coupler::physics::turbulence::BedEddies;
 
+use super::common::gas_alone;
 use super::film_diffusivity::{self, FilmGas};
 use super::heat;
-use crate::case::model::Laws;
+use crate::case::model::{ConductionArea, ConductionSpec, Laws};
 use crate::case::table::TableReader;
 
 /// `bed_eddies` is what `[gas.turbulence]` chose.
@@ -16,6 +18,9 @@ pub(super) fn read(
     bed_eddies: Option<LawChoice<dyn BedEddies>>,
     gas: Option<FilmGas<'_>>,
 ) -> Option<Laws> {
+    if !root.has("laws") && gas_alone(root) {
+        return none(root, bed_eddies?);
+    }
     let section = root.table("laws")?;
     let known = section.laws();
     let drag = section.law("drag", &known.drag).map(|(law, table)| {
@@ -55,6 +60,30 @@ pub(super) fn read(
         mass_transfer,
         film,
         film_diffusivity,
+    })
+}
+
+/// Laws of a gas without particles: none of all.
+fn none(root: &TableReader<'_>, bed_eddies: LawChoice<dyn BedEddies>) -> Option<Laws> {
+    let known = root.laws();
+    Some(Laws {
+        drag: LawChoice::named(&known.drag, NONE, Vec::new())?,
+        momentum: MomentumModel::default(),
+        heat_transfer: LawChoice::named(&known.heat_transfer, NONE, Vec::new())?,
+        heat_film: FilmTemperature::Gas,
+        conduction: ConductionSpec {
+            law: LawChoice::named(&known.conduction, NONE, Vec::new())?,
+            area: ConductionArea::Overlap,
+            gap: LawChoice::named(&known.gap, NONE, Vec::new())?,
+        },
+        radiation: None,
+        bed_eddies,
+        mass_transfer: LawChoice::named(&known.heat_transfer, NONE, Vec::new())?,
+        film: FilmTheory {
+            temperature: FilmTemperature::TwoThirds,
+            stefan_flow: StefanFlow::Mass,
+        },
+        film_diffusivity: FilmDiffusivity::default(),
     })
 }
 

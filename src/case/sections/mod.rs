@@ -63,6 +63,16 @@ pub(super) fn case(
         );
     }
     let title = root.text("title");
+    if !common::gas_alone(root) {
+        for key in ["particles", "materials", "laws", "coupling"] {
+            root.need(key);
+        }
+    }
+    let listed = root.raw("particles").and_then(|item| item.as_array());
+    if listed.is_some_and(|list| list.is_empty()) {
+        let help = "add one: [[particles]], or leave the key out to compute the gas alone";
+        root.fail("particles", "is an empty list", help);
+    }
     let folder = path.parent().unwrap_or(Path::new("."));
     let time = time::read(root);
     let mesh = mesh::read(root, folder);

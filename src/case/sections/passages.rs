@@ -40,6 +40,31 @@ fn patch<'a>(
     Some((name, condition))
 }
 
+/// Checks a mean by mass flow: of a temperature or a mass fraction on a patch through which gas flows.
+pub(super) fn flow_mean(
+    reader: &TableReader<'_>,
+    (field, name): (Option<&'static str>, Option<&str>),
+    known: &Known<'_>,
+) {
+    tells(reader, "statistic", known);
+    if field.is_some_and(|field| !["temperature", "mass_fraction"].contains(&field)) {
+        let help = "write \"mean\", or measure the temperature or a mass_fraction";
+        reader.fail("statistic", "is of what gas carries with it", help);
+    }
+    let Some(name) = name else {
+        let help = "name the patch, for example patch = \"top\", or write \"mean\"";
+        reader.fail("statistic", "is of a patch through which gas flows", help);
+        return;
+    };
+    let mut patches = known.patches.iter();
+    let condition = patches.find(|(own, _)| own == name).map(|(_, one)| one);
+    if condition.is_some_and(|one| !one.is_open() && !matches!(one, GasPatch::Inlet { .. })) {
+        let help = "name an inlet, an outlet or an opening, or write \"mean\"";
+        let rule = format!("is of a patch through which gas flows, which `{name}` is not");
+        reader.fail("statistic", rule, help);
+    }
+}
+
 /// Heat, mass or a species that flows through a patch into the gas.
 pub(super) fn flow(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     tells(reader, "flow", known);

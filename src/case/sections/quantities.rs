@@ -245,7 +245,10 @@ fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
     let field = reader.choice("gas").map(|GasField(field)| field);
     let patch = reader.text("patch");
     let probe = reader.text("probe");
-    let statistic = statistic(reader, probe.is_some().then_some(Statistic::Mean));
+    let statistic = statistic(reader, reader.has("probe").then_some(Statistic::Mean));
+    if statistic == Some(Statistic::MassFlowMean) {
+        passages::flow_mean(reader, (field, patch), known);
+    }
     if statistic == Some(Statistic::Sum) {
         let help = "write \"mean\", which is over the volume of gas or the area of a patch";
         reader.fail("statistic", "is \"sum\", which no gas field has", help);
@@ -279,13 +282,16 @@ fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'
     let counts = field == Some("count");
     let unstated = match counts {
         true => Some(Statistic::Sum),
-        false => probe.is_some().then_some(Statistic::Mean),
+        false => reader.has("probe").then_some(Statistic::Mean),
     };
     let statistic = statistic(reader, unstated);
     let over = particle_place(reader, probe, known);
     let (field, statistic) = (field?, statistic?);
     let summed = counts || ["mass", "kinetic_energy"].contains(&field);
-    if statistic == Statistic::Sum && !summed {
+    if statistic == Statistic::MassFlowMean {
+        let help = "write \"mean\"; what particles carry out is measured by `discharge`";
+        reader.fail("statistic", "is of gas through a patch alone", help);
+    } else if statistic == Statistic::Sum && !summed {
         let help = "write \"mean\"; sums are of count, mass and kinetic_energy";
         reader.fail("statistic", format!("is the sum of {field}"), help);
     } else if counts && statistic != Statistic::Sum {

@@ -18,6 +18,12 @@ pub enum PolyMeshError {
         #[source]
         cause: std::io::Error,
     },
+    /// A file that OpenFOAM wrote with `writeCompression on`.
+    #[error("{} is compressed, and only files without compression are read; unpack it by gunzip, as every .gz file beside it", file.display())]
+    Compressed {
+        /// The file.
+        file: PathBuf,
+    },
     /// A file that does not read as its kind should.
     #[error("{}, line {line}: {message}", file.display())]
     Syntax {

@@ -56,6 +56,10 @@ fn in_file<T>(
     body: impl FnOnce(&mut Scanner<'_>, &Header) -> Result<T, PolyMeshError>,
 ) -> Result<T, PolyMeshError> {
     let file = dir.join(name);
+    let packed = dir.join(format!("{name}.gz"));
+    if !file.exists() && packed.exists() {
+        return Err(PolyMeshError::Compressed { file: packed });
+    }
     let bytes = regular_file::read(&file).map_err(|cause| PolyMeshError::Io {
         file: file.clone(),
         cause,
