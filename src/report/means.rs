@@ -16,9 +16,9 @@ const PICTURES: usize = 12;
 const SHAPES: usize = 12_000;
 const HEIGHT: f64 = 240.0;
 const WIDEST: f64 = 230.0;
-/// Room for the scale at the right, and for words above.
-const BAR: f64 = 96.0;
-const TOP: f64 = 40.0;
+/// Room for the scale and its numbers at the right, and above.
+const BAR: f64 = 128.0;
+const TOP: f64 = 12.0;
 const TALLEST_BAR: f64 = 160.0;
 
 /// A picture of each mean and root mean square; empty where the run has none.
