@@ -199,6 +199,19 @@ fn a_snapshot_of_a_version_5_file_and_a_table_of_paraview_are_read() {
 }
 
 #[test]
+fn particle_input_of_mfix_is_read() {
+    let text = "0.005 0.005 0.03 2.0D-3 2500.0 0.0 0.0 -0.5\n";
+    let placed = from_file("particle_input.dat", text.as_bytes()).unwrap();
+    assert_eq!(placed.setup.radius[0], 0.002);
+    assert_eq!(placed.setup.position[0].z, 0.03);
+    let said = from_file("particle_input.dat", b"1 2 3\n").unwrap_err();
+    assert!(
+        said.starts_with("particle_input.dat, line 1: there are 3 values; version 1.0"),
+        "{said}"
+    );
+}
+
+#[test]
 fn files_that_cannot_be_used_are_refused_with_their_line() {
     let said = |name: &str, text: &str| from_file(name, text.as_bytes()).unwrap_err();
     let dump = "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n2\nITEM: ATOMS id x y z\n1 0 0 0\n";
@@ -231,7 +244,7 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
         (
             "a.dump",
             "nothing",
-            "a.dump: it is none of .csv, .vtk, .vtu, .vtp, nor does it begin with \"ITEM:\" as a LIGGGHTS dump does",
+            "a.dump: it is none of .csv, .dat, .vtk, .vtu, .vtp, nor does it begin with \"ITEM:\" as a LIGGGHTS dump does",
         ),
         (
             "a.vtk",

@@ -48,6 +48,8 @@ const ONLY_PARSED: &[(&str, &str)] = &[
     ("sbatch --array", "takes SLURM; run by the validation slurm"),
     ("--gather", "takes what a queue has run; so does the same"),
     ("blockMesh", "takes OpenFOAM"),
+    ("gmsh -3", "takes gmsh"),
+    ("gmshToFoam", "takes OpenFOAM"),
     ("paraview", "takes a screen"),
     ("perf record", "takes a kernel that counts events"),
     ("python3 read.py", "takes h5py; run by the tests of readers"),

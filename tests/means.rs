@@ -67,6 +67,21 @@ fn means_and_root_mean_squares_are_those_of_the_snapshots_of_all_windows() {
     let out = folder.path().join("out");
     program::run(&case(folder.path()), &out, &[], &SET);
     let means = arrays(&out.join("means.vtu")).unwrap();
+    // The report has a picture of each mean, and of what fluctuates.
+    let page = fs::read_to_string(calcine::report::write(&out).unwrap()).unwrap();
+    let (_, section) = page.split_once("<h2>Means over time</h2>").unwrap();
+    let section = section.split("<h2>").next().unwrap();
+    for label in [
+        "temperature mean in K",
+        "temperature rms in K",
+        "particle temperature mean in K",
+        "particle density mean in kg/m³",
+    ] {
+        assert!(section.contains(&format!("<figcaption>{label}")), "{label}");
+    }
+    assert!(!section.contains("NaN"));
+    // A middle plane through 2 cells of 20 mm and 10 layers.
+    assert_eq!(section.matches("<polygon").count() % 20, 0);
     let gas = weighted(&out, "gas.pvd");
     assert_eq!(gas.len(), 5);
     let cells = 40;

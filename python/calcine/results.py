@@ -72,19 +72,8 @@ class Results:
         with self._store() as store:
             snapshots = [store["snapshots"][key] for key in sorted(store["snapshots"])]
             times = [float(one.attrs["process_time"]) for one in snapshots]
-            mesh = store["mesh"]
-            centre = mesh["cell_centre"][()]
-            fields = xr.Dataset(
-                coords={
-                    "process_time": ("process_time", times, {"units": "s"}),
-                    "component": ["x", "y", "z"],
-                    **{
-                        axis: ("cell", centre[:, at], {"units": "m"})
-                        for at, axis in enumerate("xyz")
-                    },
-                    "cell_volume": ("cell", mesh["cell_volume"][()], {"units": "m^3"}),
-                }
-            )
+            time = ("process_time", times, {"units": "s"})
+            fields = xr.Dataset(coords={"process_time": time, **self._cells(store["mesh"])})
             for name, first in snapshots[0]["gas"].items() if snapshots else ():
                 values = np.stack([one["gas"][name][()] for one in snapshots])
                 dims = ("process_time", "cell", "component")[: values.ndim]
@@ -113,6 +102,25 @@ class Results:
             table.attrs["units"] = units
             table.attrs["process_time"] = float(group.attrs["process_time"])
         return table
+
+    def means(self) -> xr.Dataset:
+        """Means over time (``output.means``) over ``cell``: ``FIELD_mean`` and ``FIELD_rms``, the fluctuation about the mean.
+
+        ``attrs`` has the interval ``from`` and ``to``, and how much of it was ``averaged`` (s). Those of particles are NaN in cells that
+        held none.
+        """
+        with self._store() as store:
+            if "means" not in store:
+                raise CaseError(
+                    f"{self.folder} has no means: name fields in `output.means` of the case; they are written when its interval is over"
+                )
+            group = store["means"]
+            means = xr.Dataset(coords=self._cells(store["mesh"]))
+            for name, field in group.items():
+                values = field[()]
+                means[name] = (("cell", "component")[: values.ndim], values, _described(field))
+            means.attrs |= {name: float(group.attrs[name]) for name in ("from", "to", "averaged")}
+        return means
 
     def plot_series(self, *names: str, axes: Axes | None = None) -> Axes:
         """Draws columns of the series over process time with matplotlib."""
@@ -154,6 +162,16 @@ class Results:
             return reader.read()[0]
 
         return read("gas.pvd"), read("particles.pvd")
+
+    @staticmethod
+    def _cells(mesh: h5py.Group) -> dict[str, Any]:
+        """Coordinates of the cells, with their volumes, and of the components of vectors."""
+        centre = mesh["cell_centre"][()]
+        return {
+            "component": ["x", "y", "z"],
+            **{axis: ("cell", centre[:, at], {"units": "m"}) for at, axis in enumerate("xyz")},
+            "cell_volume": ("cell", mesh["cell_volume"][()], {"units": "m^3"}),
+        }
 
     def _store(self) -> h5py.File:
         path = self.folder / "results.h5"

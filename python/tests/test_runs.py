@@ -164,3 +164,24 @@ def test_results_have_units_and_the_last_committed_state(column, tmp_path):
     assert results.series_xarray()["quantities.pressure_drop"].attrs["units"] == "Pa"
     with pytest.raises(calcine.CaseError, match="not the results folder"):
         calcine.Results(tmp_path)
+
+
+def test_means_over_time_are_those_of_all_windows(column, tmp_path):
+    case = column.set("output.means.from", "0.5 s").set("output.means.to", "1 s")
+    case = case.set("output.means.gas", ["temperature", "velocity"])
+    values = []
+    with case.start(tmp_path / "run") as simulation:
+        while simulation.step() is None:
+            # Windows of 0.05 s, of which those that end up to 1 s lie in the interval.
+            if 0.52 < simulation.time < 1.02:
+                values.append(simulation.gas.temperature)
+        with pytest.raises(calcine.CaseError, match="output.means"):
+            column.run(tmp_path / "without").means()
+    assert len(values) == 10
+    means = calcine.Results(tmp_path / "run").means()
+    assert means.attrs == {"from": 0.5, "to": 1.0, "averaged": pytest.approx(0.5)}
+    assert means["temperature_mean"].attrs["units"] == "K"
+    assert means["velocity_mean"].dims == ("cell", "component")
+    np.testing.assert_allclose(means["temperature_mean"], np.mean(values, axis=0), rtol=1e-12)
+    # Fluctuations of a millionth of the temperature are known to 1e-10 of themselves by the squares of the snapshots.
+    np.testing.assert_allclose(means["temperature_rms"], np.std(values, axis=0), rtol=1e-6, atol=1e-9)

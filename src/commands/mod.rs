@@ -22,6 +22,7 @@ mod report;
 mod run;
 mod schema;
 mod shell;
+mod shell_files;
 mod signals;
 mod sweep;
 mod sweep_axes;
@@ -36,7 +37,7 @@ use std::sync::Arc;
 
 use calcine_adapters::find::find_program;
 use calcine_wire::SolverNetwork;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use signal_hook::consts::SIGXFSZ;
 
 use crate::exit;
@@ -66,6 +67,8 @@ enum Command {
     Prepare(prepare::Arguments),
     New(new::Arguments),
     Schema(schema::Arguments),
+    Completions(shell_files::Completions),
+    Man(shell_files::Man),
     /// Lists the solvers, MPI and HDF5 of this machine and the command that installs what is missing.
     Doctor,
 }
@@ -93,6 +96,8 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Command::Prepare(arguments) => prepare::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
+        Command::Completions(arguments) => shell_files::complete(arguments, Arguments::command()),
+        Command::Man(arguments) => shell_files::man(arguments, Arguments::command()),
         Command::Doctor => say(doctor::run()).map(|()| exit::OK),
     };
     match outcome {

@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use super::page::escape;
-use crate::results::files::{CASE, GAS, PARTICLES, SERIES, STORE, SUMMARY, VOIDS};
+use crate::results::files::{CASE, GAS, MEANS, PARAVIEW, PARTICLES, SERIES, STORE, SUMMARY, VOIDS};
 
 /// Files that a page links to, and what each is.
-pub(crate) const LINKED: [(&str, &str); 7] = [
+pub(crate) const LINKED: [(&str, &str); 9] = [
     (SERIES, "time series (CSV)"),
     (STORE, "all results (HDF5)"),
     (GAS, "gas (VTK, for ParaView)"),
     (PARTICLES, "particles (VTK, for ParaView)"),
+    (PARAVIEW, "script that opens gas and particles in ParaView"),
+    (MEANS, "means over time (VTK, for ParaView)"),
     (VOIDS, "void fractions (CSV)"),
     (SUMMARY, "summary (JSON)"),
     (CASE, "case (TOML)"),

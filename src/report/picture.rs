@@ -52,7 +52,7 @@ pub(super) fn render(
     };
     let outline = read::arrays(first)?;
     let plane = section::plane(&outline);
-    let Some((low, high)) = extent(&section::polygons(&outline, plane)) else {
+    let Some((low, high)) = section::extent(&section::polygons(&outline, plane)) else {
         return Ok(BedPicture::default());
     };
     let view = |number: usize| {
@@ -99,13 +99,6 @@ fn frames(aspect: f64) -> usize {
         a if a < 1.2 => 3,
         _ => 2,
     }
-}
-
-fn extent(polygons: &[Polygon]) -> Option<(Spot, Spot)> {
-    let corners = || polygons.iter().flat_map(|polygon| polygon.corners.iter());
-    let x = Range::of(corners().map(|corner| corner[0]))?;
-    let z = Range::of(corners().map(|corner| corner[1]))?;
-    Some(([x.low, z.low], [x.high, z.high]))
 }
 
 fn draw(views: &[View], low: Spot, high: Spot, shade: Shade, range: Option<Range>) -> String {

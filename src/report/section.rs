@@ -1,6 +1,7 @@
 //! The plane section of a snapshot: polygons of gas cells and circles of particles, seen along y.
 
 use super::cells::each_cell;
+use super::colour::Range;
 use crate::results::read::Arrays;
 
 /// A point of the picture: x to the right, z upwards, in m.
@@ -50,6 +51,14 @@ pub(super) fn polygons(gas: &Arrays, plane: f64) -> Vec<Polygon> {
         cell += 1;
     });
     polygons
+}
+
+/// Corners of the box about polygons, lowest and highest; `None` where there are none.
+pub(super) fn extent(polygons: &[Polygon]) -> Option<(Spot, Spot)> {
+    let corners = || polygons.iter().flat_map(|polygon| polygon.corners.iter());
+    let x = Range::of(corners().map(|corner| corner[0]))?;
+    let z = Range::of(corners().map(|corner| corner[1]))?;
+    Some(([x.low, z.low], [x.high, z.high]))
 }
 
 /// The particles that the plane cuts; one that stands for several as a sphere of their volume, weight^(1/3) times as wide.

@@ -34,8 +34,12 @@ pub(super) const DRAFT: &str = "results.h5.new";
 pub(crate) const GAS: &str = "gas.pvd";
 /// Collection of the snapshots of the particles.
 pub(crate) const PARTICLES: &str = "particles.pvd";
+/// Name of the script that opens a run in ParaView.
+pub(crate) const PARAVIEW: &str = "paraview.py";
+/// The script, the same for all runs.
+pub(super) const PARAVIEW_SCRIPT: &str = include_str!("paraview.py");
 /// Name of the file of means over time.
-pub(super) const MEANS: &str = "means.vtu";
+pub(crate) const MEANS: &str = "means.vtu";
 /// Folders of the snapshots of the gas, of the particles and of the probes.
 pub(super) const SNAPSHOTS: [&str; 3] = ["gas", "particles", "probes"];
 
@@ -70,7 +74,7 @@ pub(crate) fn is_computed(name: &str) -> bool {
 pub(crate) fn is_written(name: &str) -> bool {
     let name = name.strip_suffix(UNFINISHED).unwrap_or(name);
     let own = [
-        CASE, COMMAND, GAS, MEANS, PARTICLES, STATUS, STORE, SUMMARY, REPORT,
+        CASE, COMMAND, GAS, MEANS, PARAVIEW, PARTICLES, STATUS, STORE, SUMMARY, REPORT,
     ];
     own.contains(&name) || SNAPSHOTS.contains(&name) || is_computed(name)
 }

@@ -81,3 +81,8 @@ impl Store {
 pub(super) fn units(_path: &Path) -> [BTreeMap<String, String>; 2] {
     Default::default()
 }
+
+/// None are known.
+pub(super) fn units_of_means(_path: &Path) -> BTreeMap<String, String> {
+    BTreeMap::new()
+}

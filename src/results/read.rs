@@ -109,6 +109,27 @@ pub fn units(directory: &Path) -> [BTreeMap<String, String>; 2] {
     store::units(&directory.join(STORE))
 }
 
+/// Means of fields over time, on the cells of the gas.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadMeans {
+    /// The arrays of `means.vtu`, with its mesh.
+    pub arrays: Arrays,
+    /// Units by names; empty where the results do not tell.
+    pub units: BTreeMap<String, String>,
+}
+
+/// The means over time of a result directory; `None` where it has none, or not yet.
+pub fn means(directory: &Path) -> Result<Option<ReadMeans>, ResultsError> {
+    let path = directory.join(files::MEANS);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    Ok(Some(ReadMeans {
+        arrays: arrays(&path)?,
+        units: store::units_of_means(&directory.join(STORE)),
+    }))
+}
+
 /// Reads the arrays of a `.vtu` or `.vtp` file that the recorder wrote.
 pub fn arrays(path: &Path) -> Result<Arrays, ResultsError> {
     let wrong = |error: vtk_xml::VtkError| ResultsError::content(path, error.to_string());

@@ -110,6 +110,10 @@ impl Recorder {
         };
         let counters = restored.counters;
         files::replace(&out.join(CASE), case.effective.as_bytes())?;
+        files::replace(
+            &out.join(files::PARAVIEW),
+            files::PARAVIEW_SCRIPT.as_bytes(),
+        )?;
         Ok(Self {
             case: case.clone(),
             info,

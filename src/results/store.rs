@@ -260,9 +260,19 @@ fn unlocked() -> FileBuilder {
 /// Units of the fields of the gas and of the particles by their names, as the first snapshot states them; a file that a run
 /// is writing may tell none.
 pub(super) fn units(path: &Path) -> [BTreeMap<String, String>; 2] {
-    let read = |part: &str| -> hdf5::Result<BTreeMap<String, String>> {
+    ["gas", "particles"].map(|part| units_of(path, &format!("snapshots/0000/{part}")))
+}
+
+/// Units of the means over time by their names.
+pub(super) fn units_of_means(path: &Path) -> BTreeMap<String, String> {
+    units_of(path, MEANS)
+}
+
+/// Units of the datasets of a group; none where it cannot be read.
+fn units_of(path: &Path, group: &str) -> BTreeMap<String, String> {
+    let read = || -> hdf5::Result<BTreeMap<String, String>> {
         let file = unlocked().open(path)?;
-        let group = file.group(&format!("snapshots/0000/{part}"))?;
+        let group = file.group(group)?;
         let unit = |name: String| {
             let unit = group.dataset(&name)?.attr("unit")?;
             let text = unit.read_scalar::<VarLenUnicode>()?;
@@ -270,7 +280,7 @@ pub(super) fn units(path: &Path) -> [BTreeMap<String, String>; 2] {
         };
         group.member_names()?.into_iter().map(unit).collect()
     };
-    ["gas", "particles"].map(|part| read(part).unwrap_or_default())
+    read().unwrap_or_default()
 }
 
 fn failure(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> ResultsError {

@@ -46,6 +46,8 @@ usage: cargo xtask TASK
         [CASE …]          OpenFOAM's own solvers: cavity, taylor-green, heated-cavity,
                           hot-duct, five-species
         [--no-build]      with the programs that were built last
+  bench python-overhead   processor time of runs from Python beyond that of `calcine run`, with
+        [ROUNDS [CASE …]] the same bits: 5 rounds of moving-bed by default; KEY=VALUE changes it
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
         [--seed S]        of case, polymesh, stl, csv, curves, vtk, foam, set, checkpoint
         [TARGET …]
@@ -101,6 +103,7 @@ enum Task {
     Wheel,
     Bench(bench::Choice),
     GasError(gas_error::ErrorChoice),
+    PythonOverhead(Vec<OsString>),
     /// A test program of its own, with its words.
     Program {
         name: &'static str,
@@ -130,6 +133,13 @@ fn read(words: &[OsString]) -> Option<Task> {
         "bench" if rest.first().is_some_and(|word| word == "gas-error") => {
             let words = rest[1..].iter().map(|word| word.to_str());
             gas_error::ErrorChoice::read(words).map(Task::GasError)
+        }
+        "bench" if rest.first().is_some_and(|word| word == "python-overhead") => {
+            let rounds = rest.get(1).map(|word| word.to_str()?.parse::<u32>().ok());
+            rounds
+                .unwrap_or(Some(1))
+                .filter(|rounds| *rounds > 0)
+                .map(|_| Task::PythonOverhead(rest[1..].to_vec()))
         }
         "bench" => {
             let first = |name: &str| rest.first().is_some_and(|word| word == name);
@@ -218,6 +228,7 @@ fn perform(task: Task) -> TaskResult<()> {
         Task::Wheel => tasks::wheel(&workspace),
         Task::Bench(choice) => bench::run(&workspace, &choice),
         Task::GasError(choice) => gas_error::run(&workspace, &choice),
+        Task::PythonOverhead(words) => python::overhead(&workspace, &words),
         Task::Program { name, needs, words } => tasks::program(&workspace, name, needs, &words),
         Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),
     }
@@ -292,6 +303,16 @@ mod tests {
         let task = read(&words("bench gas-error cavity --no-build"));
         assert_eq!(task, Some(Task::GasError(choice)));
         assert_eq!(read(&words("bench gas-error cavities")), None);
+    }
+
+    #[test]
+    fn the_overhead_of_python_takes_a_number_of_rounds_and_a_case() {
+        let overhead = |line: &str| Some(Task::PythonOverhead(words(line)));
+        assert_eq!(read(&words("bench python-overhead")), overhead(""));
+        let line = "3 cases/hopper.toml time.end=1s";
+        let task = read(&words(&format!("bench python-overhead {line}")));
+        assert_eq!(task, overhead(line));
+        assert_eq!(read(&words("bench python-overhead often")), None);
     }
 
     #[test]

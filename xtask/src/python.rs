@@ -1,5 +1,6 @@
 //! The Python package: its environment below the target directory, its tests, its wheel.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -40,6 +41,19 @@ impl PythonEnvironment {
         Ok(environment)
     }
 
+    /// A folder of the package alone, with the library of a build.
+    fn site(&self, workspace: &Workspace, built: &Path, name: &str) -> TaskResult<PathBuf> {
+        let site = self.folder.join(name);
+        let package = site.join("calcine");
+        assemble(&workspace.root.join("python/calcine"), &package)?;
+        let (from, to) = (
+            built.join("lib_calcine.so"),
+            package.join("_calcine.abi3.so"),
+        );
+        fs::copy(&from, &to).map_err(|cause| Stop::io(&from, &cause))?;
+        Ok(site)
+    }
+
     fn program(&self, name: &str) -> PathBuf {
         self.folder.join("bin").join(name)
     }
@@ -49,14 +63,7 @@ impl PythonEnvironment {
 pub fn test(workspace: &Workspace) -> TaskResult<()> {
     let environment = PythonEnvironment::prepare(workspace)?;
     let built = workspace.target.join(CargoProfile::Dev.folder());
-    let site = environment.folder.join("site");
-    let package = site.join("calcine");
-    assemble(&workspace.root.join("python/calcine"), &package)?;
-    let (from, to) = (
-        built.join("lib_calcine.so"),
-        package.join("_calcine.abi3.so"),
-    );
-    fs::copy(&from, &to).map_err(|cause| Stop::io(&from, &cause))?;
+    let site = environment.site(workspace, &built, "site")?;
     // Not `python -m pytest`, which would import the package from its sources.
     let mut tests = Command::new(environment.program("pytest"));
     tests
@@ -66,6 +73,35 @@ pub fn test(workspace: &Workspace) -> TaskResult<()> {
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("CALCINE", built.join("calcine"));
     loud_step("tests of the Python package", || visibly(&mut tests))
+}
+
+/// Builds command and package in the profile for runs and prints what runs from Python cost beyond the command's, in processor time.
+pub fn overhead(workspace: &Workspace, words: &[OsString]) -> TaskResult<()> {
+    let environment = PythonEnvironment::prepare(workspace)?;
+    let log = new_log(&workspace.logs, "python-overhead")?;
+    step("build the command and the package", || {
+        quietly(
+            workspace
+                .cargo("build")
+                .args(["--release", "-p", "calcine"]),
+            &log,
+        )?;
+        let manifest = workspace.root.join("python/Cargo.toml");
+        let mut package = workspace.cargo("build");
+        quietly(
+            package.args(["--release", "--manifest-path"]).arg(manifest),
+            &log,
+        )
+    })?;
+    let built = workspace.target.join(CargoProfile::Release.folder());
+    let site = environment.site(workspace, &built, "bench-site")?;
+    let mut bench = Command::new(environment.program("python"));
+    bench
+        .arg(workspace.root.join("python/benches/overhead.py"))
+        .args(words)
+        .env("PYTHONPATH", &site)
+        .env("CALCINE", built.join("calcine"));
+    loud_step("overhead of runs from Python", || visibly(&mut bench))
 }
 
 /// Builds the wheel in the profile for runs.

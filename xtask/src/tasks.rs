@@ -143,7 +143,67 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> TaskResult
             quietly(&mut command, &log)
         },
     )?;
+    step("install docs, cases, completions and man pages", || {
+        let share = prefix.join("share");
+        for folder in ["docs", "cases"] {
+            copy_tree(
+                &workspace.root.join(folder),
+                &share.join("calcine").join(folder),
+            )?;
+        }
+        for file in ["README.md", "CHANGELOG.md"] {
+            copy(
+                &workspace.root.join(file),
+                &share.join("calcine").join(file),
+            )?;
+        }
+        shell_files(&bin.join("calcine"), &share)
+    })?;
     say(&format!("the command is {}", bin.join("calcine").display()));
+    Ok(())
+}
+
+/// Where the shells that `calcine completions` knows look for them below `share`.
+const COMPLETIONS: [(&str, &str); 3] = [
+    ("bash", "bash-completion/completions/calcine"),
+    ("zsh", "zsh/site-functions/_calcine"),
+    ("fish", "fish/vendor_completions.d/calcine.fish"),
+];
+
+/// Completions and man pages, by the program itself.
+fn shell_files(calcine: &Path, share: &Path) -> TaskResult<()> {
+    for (shell, file) in COMPLETIONS {
+        let output = Command::new(calcine).args(["completions", shell]).output();
+        let output = output.map_err(|cause| Stop::io(calcine, &cause))?;
+        if !output.status.success() {
+            return Err(Stop(format!("calcine completions {shell} failed")));
+        }
+        let file = share.join(file);
+        if let Some(folder) = file.parent() {
+            fs::create_dir_all(folder).map_err(|cause| Stop::io(folder, &cause))?;
+        }
+        fs::write(&file, output.stdout).map_err(|cause| Stop::io(&file, &cause))?;
+    }
+    let made = Command::new(calcine)
+        .arg("man")
+        .arg(share.join("man/man1"))
+        .status();
+    match made.map_err(|cause| Stop::io(calcine, &cause))?.success() {
+        true => Ok(()),
+        false => Err(Stop("calcine man failed".into())),
+    }
+}
+
+/// Copies a folder with all that is in it.
+fn copy_tree(from: &Path, to: &Path) -> TaskResult<()> {
+    let entries = fs::read_dir(from).map_err(|cause| Stop::io(from, &cause))?;
+    for entry in entries.flatten() {
+        let (path, target) = (entry.path(), to.join(entry.file_name()));
+        match path.is_dir() {
+            true => copy_tree(&path, &target)?,
+            false => copy(&path, &target)?,
+        }
+    }
     Ok(())
 }
 

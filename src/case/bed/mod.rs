@@ -1,8 +1,9 @@
-//! Particles read from files: CSV, LIGGGHTS dumps, VTK in its old and its XML form.
+//! Particles read from files: CSV, LIGGGHTS dumps, particle input of MFiX, VTK in its old and its XML form.
 
 mod csv;
 mod dump;
 mod legacy;
+mod mfix;
 mod sheet;
 mod xml;
 
@@ -80,8 +81,9 @@ fn sheet(path: &Path, bytes: &[u8], choice: Choice) -> Result<Sheet, Fault> {
         Some("vtu" | "vtp") => xml::sheet(bytes),
         Some("vtk") => legacy::sheet(text()?),
         Some("csv" | "txt") => csv::sheet(text()?).and_then(Sheet::checked),
+        Some("dat") => mfix::sheet(text()?),
         _ => {
-            let what = "it is none of .csv, .vtk, .vtu, .vtp, nor does it begin with \"ITEM:\" as a \
+            let what = "it is none of .csv, .dat, .vtk, .vtu, .vtp, nor does it begin with \"ITEM:\" as a \
                         LIGGGHTS dump does";
             Err((None, what.into()))
         }

@@ -53,7 +53,7 @@ const PLACE_REGION: &[Key] = &[
 #[rustfmt::skip]
 const PLACE: &[Key] = &[
     key("grid", Table(PLACE_GRID), OneOf, "A regular stacking. Either this or `file`.", "{ first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }"),
-    key("file", Path, OneOf, "Particles of a file: `.csv`, a LIGGGHTS text dump, `.vtk` (ASCII), `.vtp` or `.vtu` (ASCII or raw). Lengths in m; diameter or radius, temperature, velocity and weight where it has them.", "\"bed.csv\""),
+    key("file", Path, OneOf, "Particles of a file: `.csv`, a LIGGGHTS text dump, `.dat` of MFiX, `.vtk` (ASCII), `.vtp` or `.vtu` (ASCII or raw). Lengths in m; diameter or radius, temperature, velocity and weight where it has them.", "\"bed.csv\""),
     key("height", Number(D::LENGTH, Positive), Without("with `packing`, either this or `region`"), "Height of the packing above the bottom of the mesh.", "\"145 mm\""),
     key("region", Table(PLACE_REGION), Without("with `packing`, either this or `height`"), "What the packing fills: a layer of a generated mesh (`from`, `to`), so that populations lie one above the other, or a box or an upright cylinder within any mesh.", "{ from = \"60 mm\", to = \"90 mm\" }"),
     key("solid_fraction", Number(D::NONE, Within(0.0, 0.74)), Without("with `random`, either this or `number`"), "Volume of spheres over the filled space, layers at the walls included; up to about 0.59 with equal spheres.", "0.58"),
