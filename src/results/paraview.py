@@ -22,7 +22,10 @@ def show(view):
     cut.SliceType.Origin = [0.5 * (a + b) for a, b in zip(low, high)]
     cut.SliceType.Normal = [0.0, 1.0, 0.0]
     colour(simple.Show(cut, view), gas.CellData, "CELLS", view)
-    particles = simple.PVDReader(FileName=os.path.join(FOLDER, "particles.pvd"))
+    rows = os.path.join(FOLDER, "particles.pvd")
+    if not os.path.exists(rows):
+        return
+    particles = simple.PVDReader(FileName=rows)
     particles.UpdatePipeline()
     spheres = simple.Glyph(Input=particles, GlyphType="Sphere")
     spheres.GlyphMode = "All Points"

@@ -184,7 +184,7 @@ impl Target for AttachedFiles {
                         &prepared.mesh,
                         particles,
                         &packing,
-                        None,
+                        Default::default(),
                     );
                     assert!(!report.is_empty());
                 }

@@ -151,6 +151,15 @@ fn check(case: &Case) {
     };
     if let Ok(packing) = prepared.packing(case) {
         let particles = &prepared.particles;
-        assert!(!check_report(case, &prepared.mesh, particles, &packing, None).is_empty());
+        assert!(
+            !check_report(
+                case,
+                &prepared.mesh,
+                particles,
+                &packing,
+                Default::default()
+            )
+            .is_empty()
+        );
     }
 }
