@@ -368,7 +368,7 @@ impl CoupledRun {
         if self.is_too_long(window) {
             return Ok(Advanced::TooLong);
         }
-        if let Err(error) = self.check_solved(window) {
+        if let Err(error) = self.unsolved.check(&self.exchange.convergence, window) {
             return Err(self.told_with_circumstances(error.into(), window));
         }
         self.move_particles(supervisor, window)?;

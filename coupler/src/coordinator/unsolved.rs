@@ -1,6 +1,5 @@
 //! A gas whose equations stay unsolved, window after window: what it leaves is no flow.
 
-use super::CoupledRun;
 use crate::error::{FailureKind, PartError};
 use crate::part::Convergence;
 use crate::time::Window;
@@ -15,23 +14,13 @@ const WINDOWS: u32 = 5;
 pub(super) struct UnsolvedWindows(u32);
 
 impl UnsolvedWindows {
-    /// Takes up how a window went; true where it is the last one of too many in a row.
-    fn count(&mut self, convergence: &Convergence) -> bool {
-        // A residual that is NaN is no small one.
-        let small = convergence.residual < UNSOLVED;
-        self.0 = match convergence.converged || small {
-            true => 0,
-            false => self.0 + 1,
-        };
-        self.0 >= WINDOWS
-    }
-}
-
-impl CoupledRun {
-    /// Refuses the last one of several windows whose gas was not solved.
-    pub(super) fn check_solved(&mut self, window: &Window) -> Result<(), PartError> {
-        let convergence = &self.exchange.convergence;
-        if !self.unsolved.count(convergence) {
+    /// Refuses the last one of too many windows in a row.
+    pub(super) fn check(
+        &mut self,
+        convergence: &Convergence,
+        window: &Window,
+    ) -> Result<(), PartError> {
+        if !self.count(convergence) {
             return Ok(());
         }
         let message = format!(
@@ -43,6 +32,17 @@ impl CoupledRun {
             WINDOWS - 1
         );
         Err(PartError::new("gas", FailureKind::NotConverged, message).in_window(window))
+    }
+
+    /// Takes up how a window went; true where it is the last one of too many in a row.
+    fn count(&mut self, convergence: &Convergence) -> bool {
+        // A residual that is NaN is no small one.
+        let small = convergence.residual < UNSOLVED;
+        self.0 = match convergence.converged || small {
+            true => 0,
+            false => self.0 + 1,
+        };
+        self.0 >= WINDOWS
     }
 }
 
