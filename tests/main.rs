@@ -12,6 +12,7 @@ mod case_files;
 mod changed_files;
 mod check_and_run;
 mod command_line;
+mod command_line_json;
 mod conform;
 mod contacts_agree;
 mod continuation;

@@ -27,6 +27,7 @@ mod signals;
 mod sweep;
 mod sweep_axes;
 mod sweep_table;
+mod told_as_json;
 mod tune;
 mod tuning_line;
 mod watch;

@@ -14,6 +14,7 @@ use super::failure::Failure;
 use super::inputs::{read_and_prepare, results_folder};
 use super::parallel::{Parallel, Transport, crowded};
 use super::shell::word;
+use super::told_as_json;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::exit;
 
@@ -62,6 +63,9 @@ pub(super) struct Arguments {
     /// range of a law or did not converge.
     #[arg(long)]
     strict: bool,
+    /// Prints one line of JSON at the end in place of text: `exit_code`, `out`, `report`, and what `summary.json` has. Shows no progress bar.
+    #[arg(long)]
+    json: bool,
 }
 
 impl Arguments {
@@ -78,6 +82,7 @@ impl Arguments {
             ("--particles", self.particles != ParticleBackend::Native),
             ("--threads", self.threads.is_some()),
             ("--strict", self.strict),
+            ("--json", self.json),
         ];
         let given = own.iter().find(|(_, given)| *given).map(|(name, _)| *name);
         given.or_else(|| self.parallel.given())
@@ -142,6 +147,7 @@ impl Arguments {
             quiet: self.quiet || before.quiet,
             strict: self.strict || before.strict,
             stop_after: self.stop_after,
+            json: self.json,
             ..before
         };
         Ok((arguments, recorded.case.into()))
@@ -168,7 +174,7 @@ pub(super) fn run(
     }
     use_threads(arguments.threads.map(usize::from))?;
     let (mut case, prepared) = read_and_prepare(case_file, &arguments.set)?;
-    for change in &case.changes {
+    for change in case.changes.iter().filter(|_| !arguments.json) {
         say(format_args!("set {change}"))?;
     }
     let out = results_folder(&case, arguments.out.as_deref());
@@ -196,7 +202,7 @@ pub(super) fn run(
         out: &out,
         resume: arguments.resume.is_some(),
         from: arguments.from.as_deref(),
-        progress: !arguments.quiet,
+        progress: !arguments.quiet && !arguments.json,
         stop_after: arguments.stop_after,
         strict: arguments.strict,
         recorded: line.recorded(),
@@ -210,6 +216,12 @@ pub(super) fn run(
     // Written before anything is printed: standard output may be lost.
     let complete = [exit::OK, exit::OUTSIDE_BANDS, exit::WARNINGS].contains(&done.code);
     let page = complete.then(|| crate::report::write(&out));
+    if arguments.json {
+        let page = page.transpose();
+        let page = page.map_err(|error| Failure::told(exit::OTHER, &error))?;
+        say(told_as_json::line(done.code, &out, page.as_deref())?)?;
+        return Ok(done.code);
+    }
     say(&done.text)?;
     if let Some(page) = page {
         let page = page.map_err(|error| Failure::told(exit::OTHER, &error))?;

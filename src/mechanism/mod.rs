@@ -4,6 +4,7 @@
 mod cantera;
 mod chemkin;
 mod chemkin_thermo;
+mod chemkin_transport;
 mod equation;
 mod fault;
 mod file;
@@ -17,6 +18,7 @@ use calcine_coupler::physics::kinetics::{Collider, Mechanism, ReactionStatement}
 use calcine_coupler::physics::thermo::Mixture;
 use thiserror::Error;
 
+pub use chemkin_transport::Molecule;
 use fault::{Fault, fault};
 pub use file::{MechanismFile, ParsedReaction, Thermo};
 
@@ -63,6 +65,12 @@ pub fn read_thermo(path: &Path) -> Result<Vec<Thermo>, MechanismError> {
         false => chemkin_thermo::parse(&text, None),
     };
     parsed.map_err(|fault| placed(path, fault))
+}
+
+/// Reads the potentials of molecules in a file of CHEMKIN's transport data.
+pub fn read_transport(path: &Path) -> Result<Vec<Molecule>, MechanismError> {
+    let text = contents(path)?;
+    chemkin_transport::parse(&text).map_err(|fault| placed(path, fault))
 }
 
 fn is_yaml(path: &Path) -> bool {

@@ -28,6 +28,7 @@ const SPECIES_DATA_TRANSPORT: &[Key] = &[
 #[rustfmt::skip]
 const SPECIES_DATA: &[Key] = &[
     key("thermo", Path, Required, "Their thermodynamics: NASA's seven coefficients in a file of Cantera (.yaml), which may have the transport data too, or of CHEMKIN (any other name).", "\"ethene.yaml\""),
+    key("transport_file", Path, Without("none"), "CHEMKIN's transport data (`tran.dat`) of the species in `thermo`: their well depths and diameters count in place of those of that file.", "\"tran.dat\""),
     key("transport", Named(SPECIES_DATA_TRANSPORT), Without("that of the file"), "What the file does not say of the molecules, or what counts in its place; by species.", "{ C2H4 = { diameter = \"3.971e-10 m\", well_depth = \"280.8 K\" } }"),
 ];
 

@@ -6,7 +6,7 @@ use calcine_coupler::physics::thermo::{LennardJones, Mixture, Species, fuller};
 
 use super::common::existing;
 use crate::case::table::TableReader;
-use crate::mechanism::{self, Thermo};
+use crate::mechanism::{self, MechanismError, Molecule, Thermo};
 
 /// What the case says of the transport of a species; the rest is by its file.
 struct ParsedReaction {
@@ -19,8 +19,9 @@ struct ParsedReaction {
 /// A file of thermodynamics, and what the case says beside it.
 struct Data<'a> {
     table: TableReader<'a>,
-    path: PathBuf,
+    paths: Vec<PathBuf>,
     thermo: Vec<Thermo>,
+    molecules: Vec<Molecule>,
     stated: Vec<ParsedReaction>,
 }
 
@@ -51,7 +52,7 @@ pub(super) fn mixture(
         }
     }
     match Mixture::of(species) {
-        Ok(mixture) => Some((mixture, data.map(|data| data.path).into_iter().collect())),
+        Ok(mixture) => Some((mixture, data.map(|data| data.paths).unwrap_or_default())),
         Err(error) => {
             refuse(&error, "write at least one species, each once");
             None
@@ -77,25 +78,36 @@ fn data<'a>(table: TableReader<'a>, names: &[String], folder: &Path) -> Option<D
             own.finish();
         }
     }
+    let transport = match table.has("transport_file") {
+        true => Some(existing(&table, "transport_file", folder)?),
+        false => None,
+    };
     table.finish();
     let path = path?;
-    match mechanism::read_thermo(&path) {
-        Ok(thermo) => Some(Data {
-            table,
-            path,
-            thermo,
-            stated,
-        }),
-        Err(error) => {
-            let line = error
-                .line
-                .map_or(String::new(), |line| format!(" in line {line}"));
-            let rule = format!("cannot be read{line}: {}", error.what);
-            let help = "a file of Cantera (.yaml) or of CHEMKIN's thermodynamics is read";
-            table.fail("thermo", rule, help);
-            None
-        }
-    }
+    let help = "a file of Cantera (.yaml) or of CHEMKIN's thermodynamics is read";
+    let thermo = mechanism::read_thermo(&path);
+    let thermo = thermo.map_err(|error| unread(&table, "thermo", &error, help));
+    let help = "CHEMKIN's transport data has a line of a name and six numbers for each species";
+    let molecules = match &transport {
+        Some(path) => mechanism::read_transport(path)
+            .map_err(|error| unread(&table, "transport_file", &error, help)),
+        None => Ok(Vec::new()),
+    };
+    Some(Data {
+        thermo: thermo.ok()?,
+        molecules: molecules.ok()?,
+        table,
+        paths: [path].into_iter().chain(transport).collect(),
+        stated,
+    })
+}
+
+/// Refuses a file.
+fn unread(table: &TableReader<'_>, key: &str, error: &MechanismError, help: &str) {
+    let line = error
+        .line
+        .map_or(String::new(), |line| format!(" in line {line}"));
+    table.fail(key, format!("cannot be read{line}: {}", error.what), help);
 }
 
 /// A species that is not built in.
@@ -118,7 +130,8 @@ fn of_file(section: &TableReader<'_>, data: &Data<'_>, name: &str) -> Option<Spe
         return None;
     }
     let stated = data.stated.iter().find(|one| one.name == name);
-    let file = thermo.potential;
+    let molecule = data.molecules.iter().find(|one| one.name == name);
+    let file = molecule.map(|one| one.potential).or(thermo.potential);
     let diameter = stated.and_then(|one| one.diameter);
     let well_depth = stated.and_then(|one| one.well_depth);
     let potential = (

@@ -1,0 +1,39 @@
+//! The end of a run as one line of JSON.
+
+use std::fs;
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::failure::Failure;
+use crate::exit;
+use crate::results::files;
+
+/// What `calcine run --json` prints.
+#[derive(Debug, Serialize)]
+struct End<'a> {
+    exit_code: u8,
+    out: &'a Path,
+    /// Of a complete run.
+    report: Option<&'a Path>,
+    /// `summary.json`.
+    summary: Value,
+}
+
+/// The line of a run in a results folder that ends with an exit code.
+pub(super) fn line(code: u8, out: &Path, report: Option<&Path>) -> Result<String, Failure> {
+    let path = out.join(files::SUMMARY);
+    let unread = |cause: &dyn std::fmt::Display| {
+        let message = format!("{} cannot be read: {cause}", path.display());
+        Failure::new(exit::OTHER, message)
+    };
+    let text = fs::read_to_string(&path).map_err(|cause| unread(&cause))?;
+    let end = End {
+        exit_code: code,
+        out,
+        report,
+        summary: serde_json::from_str(&text).map_err(|cause| unread(&cause))?,
+    };
+    serde_json::to_string(&end).map_err(|cause| unread(&cause))
+}
