@@ -12,7 +12,7 @@ use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
-use super::pace::Pace;
+use super::pace::{Judgement, Pace};
 use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
@@ -86,6 +86,14 @@ pub struct Equations {
     windows: u32,
 }
 
+/// What an outer loop had before it took more pressure corrections than the case's.
+#[derive(Debug)]
+struct BeforeLonger {
+    state: GasState,
+    /// Residual of momentum and continuity.
+    flow: f64,
+}
+
 impl Equations {
     /// Empty equations on a grid.
     pub fn new(grid: &Arc<MeshGraph>) -> Self {
@@ -134,9 +142,9 @@ impl Equations {
         self.watch = Stopwatch::of_window(self.windows, frame.grid.cells());
         self.assess_flow(frame, now);
         let mut pace = Pace::new(controls, self.flow);
+        let mut before: Option<BeforeLonger> = None;
         for outer in 1..=controls.outer_iterations.max(1) {
-            convergence.linear_iterations +=
-                self.iterate(frame, controls, pace.corrections, now)?;
+            let iterated = self.iterate(frame, controls, pace.corrections, now);
             convergence.outer_iterations = outer;
             if outer >= FOLLOWED {
                 self.share = 0.5;
@@ -144,7 +152,17 @@ impl Equations {
             }
             // Early iterates may be no state of a gas (after a start from rest a cell may give more than it
             // holds), as long as they are numbers; the last one must be one.
-            guard::nonsense(now, &frame.grid.centre)?;
+            let sense = guard::nonsense(now, &frame.grid.centre);
+            match iterated.and_then(|iterations| sense.map(|()| iterations)) {
+                Ok(iterations) => convergence.linear_iterations += iterations,
+                Err(failure) => {
+                    let Some(kept) = before.take() else {
+                        return Err(failure);
+                    };
+                    convergence.residual = self.go_back(frame, &mut pace, &kept, now);
+                    continue;
+                }
+            }
             convergence.residual = self.assess(frame, now);
             if convergence.residual <= controls.outer_tolerance {
                 if self.volume_residual(frame, now) <= tolerance::volume_bound(controls) {
@@ -154,7 +172,25 @@ impl Equations {
                 // What is left of continuity is in few cells.
                 self.closer *= 0.1;
             }
-            pace.judge(controls, outer, self.flow);
+            match pace.judge(controls, outer, self.flow) {
+                Judgement::Same => {}
+                Judgement::More if before.is_none() => {
+                    before = Some(BeforeLonger {
+                        state: now.clone(),
+                        flow: self.flow,
+                    });
+                }
+                Judgement::More => {}
+                Judgement::Back => {
+                    if let Some(kept) = before.take_if(|kept| self.flow > kept.flow) {
+                        convergence.residual = self.go_back(frame, &mut pace, &kept, now);
+                    }
+                }
+            }
+        }
+        // What longer sequences made worse until the end.
+        if let Some(kept) = before.filter(|kept| !convergence.converged && self.flow > kept.flow) {
+            convergence.residual = self.go_back(frame, &mut pace, &kept, now);
         }
         let linear = LinearTolerances::new(controls, &self.continuity);
         convergence.linear_iterations += self.close(frame, linear.scalars, now);
@@ -164,6 +200,21 @@ impl Equations {
             self.momentum.update_gradients(frame, &now.velocity);
         }
         Ok(convergence)
+    }
+
+    /// Takes up what was there before longer sequences of corrections; its residual.
+    fn go_back(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        pace: &mut Pace,
+        kept: &BeforeLonger,
+        now: &mut GasState,
+    ) -> f64 {
+        now.take(&kept.state);
+        self.pressure.carry_by(frame, &now.pressure_gradient);
+        let residual = self.assess(frame, now);
+        pace.go_back(self.flow);
+        residual
     }
 
     /// Assembles momentum with the fields at hand; how far these are from solving it and continuity.

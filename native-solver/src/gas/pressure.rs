@@ -169,8 +169,14 @@ impl Pressure {
         if let Approximation::Large(multigrid) = &mut self.preconditioner {
             multigrid.forget();
         }
+        self.carry_by(frame, &frame.old.pressure_gradient);
+    }
+
+    /// Pressures are carried along faces by this gradient.
+    pub fn carry_by(&mut self, frame: &AttemptFrame<'_>, gradient: &[Vec3]) {
         if !frame.grid.orthogonal {
-            self.along.clone_from(&frame.old.pressure_gradient);
+            self.along.clear();
+            self.along.extend_from_slice(gradient);
         }
     }
 
