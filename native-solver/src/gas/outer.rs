@@ -12,7 +12,7 @@ use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
-use super::pace::{Judgement, Pace};
+use super::pace::Pace;
 use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
@@ -86,7 +86,7 @@ pub struct Equations {
     windows: u32,
 }
 
-/// What an outer loop had before it took more pressure corrections than the case's.
+/// The best that an outer loop had when the number of its pressure corrections changed.
 #[derive(Debug)]
 struct BeforeLonger {
     state: GasState,
@@ -172,20 +172,12 @@ impl Equations {
                 // What is left of continuity is in few cells.
                 self.closer *= 0.1;
             }
-            match pace.judge(controls, outer, self.flow) {
-                Judgement::Same => {}
-                Judgement::More if before.is_none() => {
-                    before = Some(BeforeLonger {
-                        state: now.clone(),
-                        flow: self.flow,
-                    });
-                }
-                Judgement::More => {}
-                Judgement::Back => {
-                    if let Some(kept) = before.take_if(|kept| self.flow > kept.flow) {
-                        convergence.residual = self.go_back(frame, &mut pace, &kept, now);
-                    }
-                }
+            let better = |kept: &BeforeLonger| self.flow < kept.flow;
+            if pace.judge(controls, outer, self.flow) && before.as_ref().is_none_or(better) {
+                before = Some(BeforeLonger {
+                    state: now.clone(),
+                    flow: self.flow,
+                });
             }
         }
         // What longer sequences made worse until the end.

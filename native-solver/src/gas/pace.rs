@@ -1,6 +1,6 @@
 //! How many pressure corrections an outer iteration takes: the case's, and twice as many, and again, where at the pace of
-//! momentum and continuity the outer loop would not reach its tolerance within its iterations. Where the residual grows with two such longer
-//! sequences, one after the other, the case's number is taken again, from what was there before them: on stretched tetrahedra they diverge.
+//! momentum and continuity the outer loop would not reach its tolerance within its iterations. Where the residual grows with the most, half as many
+//! are the most from then on: on stretched tetrahedra long sequences diverge.
 
 use std::collections::VecDeque;
 
@@ -9,17 +9,6 @@ use calcine_coupler::setup::GasControls;
 /// Outer iterations over which a pace is judged: the first after a change still has what was there before.
 const JUDGED: usize = 3;
 
-/// What comes of a judgement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Judgement {
-    /// The same number of corrections.
-    Same,
-    /// More than before.
-    More,
-    /// The case's again, for good.
-    Back,
-}
-
 /// The number of corrections, and the pace at which they take the residual down.
 #[derive(Clone, Debug)]
 pub struct Pace {
@@ -27,8 +16,6 @@ pub struct Pace {
     pub corrections: u32,
     fewest: u32,
     most: u32,
-    /// Longer sequences in a row with which the residual grew.
-    grew: u32,
     /// The last residuals with this number of corrections, oldest first.
     residuals: VecDeque<f64>,
 }
@@ -40,15 +27,9 @@ impl Pace {
         Self {
             corrections,
             fewest: corrections,
-            grew: 0,
             most: controls.most_pressure_corrections.max(corrections),
             residuals: VecDeque::from([residual]),
         }
-    }
-
-    /// True where there are more corrections than the case's.
-    pub fn is_longer(&self) -> bool {
-        self.corrections > self.fewest
     }
 
     /// Takes the case's number again, at a residual.
@@ -58,33 +39,34 @@ impl Pace {
         self.residuals = VecDeque::from([residual]);
     }
 
-    /// Takes up the residual after an outer iteration.
-    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) -> Judgement {
+    /// Takes up the residual after an outer iteration; true where the number changes.
+    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) -> bool {
         self.residuals.push_back(residual);
         if self.residuals.len() <= JUDGED || self.most == self.fewest {
-            return Judgement::Same;
+            return false;
         }
         let before = self.residuals.pop_front().unwrap_or(residual);
-        if self.is_longer() {
+        let last = self.corrections;
+        if last == self.most {
             // A residual that is NaN grew.
             let fell = residual < before;
-            self.grew = if fell { 0 } else { self.grew + 1 };
-            if self.grew > 1 || (self.grew > 0 && self.corrections == self.most) {
-                return Judgement::Back;
+            if !fell {
+                self.most = (last / 2).max(self.fewest);
+                self.corrections = self.most;
+            }
+        } else {
+            let left = controls.outer_iterations.saturating_sub(outer);
+            let pace = (residual / before).powf(1.0 / JUDGED as f64);
+            let expected = residual * pace.powf(f64::from(left));
+            if expected > controls.outer_tolerance {
+                self.corrections = (2 * last).min(self.most);
             }
         }
-        if self.corrections == self.most {
-            return Judgement::Same;
-        }
-        let left = controls.outer_iterations.saturating_sub(outer);
-        let pace = (residual / before).powf(1.0 / JUDGED as f64);
-        let expected = residual * pace.powf(f64::from(left));
-        if expected > controls.outer_tolerance {
-            self.corrections = (2 * self.corrections).min(self.most);
+        let changed = self.corrections != last;
+        if changed {
             self.residuals = VecDeque::from([residual]);
-            return Judgement::More;
         }
-        Judgement::Same
+        changed
     }
 }
 
@@ -120,23 +102,19 @@ mod tests {
     }
 
     #[test]
-    fn the_case_s_number_counts_again_where_the_residual_grows_with_two_longer_sequences() {
+    fn corrections_halve_where_the_residual_grows_with_the_most() {
         let mut pace = Pace::new(&controls(), 1.0);
-        let residuals = [0.9, 0.8, 0.7, 0.8, 0.9, 1.0, 2.0, 3.0, 4.0];
-        let found: Vec<_> = (1..)
+        let residuals = [0.9, 0.8, 0.7, 0.8, 0.9, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+        let corrections: Vec<_> = (1..)
             .zip(residuals)
-            .map(|(outer, residual)| pace.judge(&controls(), outer, residual))
+            .filter(|&(outer, residual)| pace.judge(&controls(), outer, residual))
+            .map(|(outer, _)| outer)
             .collect();
-        assert_eq!(found[2], Judgement::More);
-        assert_eq!(found[5], Judgement::More);
-        assert_eq!(found[8], Judgement::Back);
-        assert_eq!(pace.corrections, 7);
-        pace.go_back(0.7);
+        // To 4, to 7, to 3, to 2.
+        assert_eq!(corrections, [3, 6, 9, 12]);
         assert_eq!(pace.corrections, 2);
-        let later: Vec<_> = (10..16)
-            .map(|outer| pace.judge(&controls(), outer, 0.7))
-            .collect();
-        assert!(later.iter().all(|one| *one == Judgement::Same));
+        let later = (13..19).map(|outer| pace.judge(&controls(), outer, 7.0));
+        assert!(!later.collect::<Vec<_>>().contains(&true));
     }
 
     #[test]
