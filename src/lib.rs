@@ -6,6 +6,7 @@ pub mod commands;
 pub mod compare;
 mod error_chain;
 pub mod exit;
+mod fortran;
 mod hex;
 pub mod laws;
 pub mod mechanism;

@@ -20,6 +20,7 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::hello::{NEW, NOT_COMPARED};
 use calcine_wire::{Catalogue, Field, Hello};
 
+use crate::checkpoint::absolute;
 use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program};
 use crate::particles::{self, LinkedParticles};
@@ -159,14 +160,6 @@ impl ExternalGasLaunch<'_> {
         fs::write(folder.join("case.toml"), self.case)
             .map_err(|error| unwritten(NAME, folder, error))
     }
-}
-
-/// The absolute path of a checkpoint's folder.
-fn absolute(name: &str, folder: &Path) -> Result<PathBuf, PartError> {
-    std::path::absolute(folder).map_err(|error| {
-        let message = format!("the checkpoint {} cannot be used", folder.display());
-        PartError::new(name, FailureKind::Io, message).caused_by(error)
-    })
 }
 
 fn unwritten(

@@ -4,6 +4,7 @@
 //! columns mean.
 
 pub mod answer;
+mod checkpoint;
 pub mod external;
 pub mod find;
 pub mod gas;

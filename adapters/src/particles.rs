@@ -20,6 +20,7 @@ use calcine_wire::{Catalogue, ColumnSet, Field, Link, MessageKind, WireError};
 use thiserror::Error;
 
 use crate::answer::{self, WrongAnswer};
+use crate::checkpoint::unusable;
 use crate::solver::{ExternalSolver, header};
 
 /// Name of the file with ids and radii in a checkpoint's folder.
@@ -40,7 +41,7 @@ pub(crate) fn identity(
         let state = StateFile::read(&folder.join(IDENTITY))?;
         Ok((state.u64s("id")?.to_vec(), state.f64s("radius")?.to_vec()))
     };
-    read().map_err(|error| unusable(name, folder, error))
+    read().map_err(|error: StateFileError| unusable(name, folder, error))
 }
 
 /// What is wrong with the particles that a solver starts with, where ids and radii must be these.
@@ -57,11 +58,6 @@ pub(crate) fn other_than(
     Some(format!(
         "it starts with particle {other} of radius {own} m where the run has particle {id} of radius {radius} m"
     ))
-}
-
-fn unusable(name: &str, folder: &Path, error: StateFileError) -> PartError {
-    let message = format!("the checkpoint {} cannot be used", folder.display());
-    PartError::new(name, FailureKind::Io, message).caused_by(error)
 }
 
 /// A change in the lines of CHANGE, with every digit.

@@ -138,6 +138,24 @@ fn gas_at_rest_stays_at_rest_where_faces_are_warped() {
 
 /// Air of 1 m/s through a duct of 60 × 10 × 100 mm that leans by so many degrees, in windows of 5 ms: the fastest cell in m/s
 /// after 0.2 s, as `native-solver/tests/skewed.rs` has it.
+/// Speed of the fastest cell in m/s after so many windows of a length in s in an empty mesh, each of which converges.
+fn fastest_after(duct: &mut Duct, (windows, seconds): (usize, f64), cells: usize) -> f64 {
+    let span = Ticks::from_seconds(seconds).unwrap();
+    duct.window.span = Clocks {
+        motion: span,
+        process: span,
+    };
+    let empty = Bed {
+        void_fraction: vec![1.0; cells],
+    };
+    for window in 0..windows {
+        let done = duct.advance(1, &empty, &exchange_of_nothing(cells));
+        assert!(done.converged, "window {window}: {done:?}");
+    }
+    let speeds = duct.gas.fields().velocity.iter().map(|u| u.norm());
+    speeds.fold(0.0, f64::max)
+}
+
 #[test]
 fn air_passes_a_duct_that_leans_by_up_to_65_degrees() {
     for (degrees, expected) in [
@@ -162,23 +180,7 @@ fn air_passes_a_duct_that_leans_by_up_to_65_degrees() {
             }
         }
         let mut duct = Duct::launch_on(leaning, &air, folder.path());
-        let span = Ticks::from_seconds(5e-3).unwrap();
-        duct.window.span = Clocks {
-            motion: span,
-            process: span,
-        };
-        let empty = Bed {
-            void_fraction: vec![1.0; cells],
-        };
-        for window in 0..40 {
-            let done = duct.advance(1, &empty, &exchange_of_nothing(cells));
-            assert!(
-                done.converged,
-                "{degrees} degrees, window {window}: {done:?}"
-            );
-        }
-        let speeds = duct.gas.fields().velocity.iter().map(|u| u.norm());
-        let fastest = speeds.fold(0.0, f64::max);
+        let fastest = fastest_after(&mut duct, (40, 5e-3), cells);
         assert!(
             (fastest / expected - 1.0).abs() < 1e-5,
             "{degrees} degrees: {fastest}"
@@ -226,20 +228,7 @@ fn a_viscous_fluid_passes_thin_prisms_as_natively() {
         }
     }
     let mut duct = Duct::launch_on(thin, &viscous, folder.path());
-    let span = Ticks::from_seconds(0.1).unwrap();
-    duct.window.span = Clocks {
-        motion: span,
-        process: span,
-    };
-    let empty = Bed {
-        void_fraction: vec![1.0; cells],
-    };
-    for window in 0..10 {
-        let done = duct.advance(1, &empty, &exchange_of_nothing(cells));
-        assert!(done.converged, "window {window}: {done:?}");
-    }
-    let speeds = duct.gas.fields().velocity.iter().map(|u| u.norm());
-    let fastest = speeds.fold(0.0, f64::max);
+    let fastest = fastest_after(&mut duct, (10, 0.1), cells);
     assert!(
         (fastest / FASTEST_OF_THIN_PRISMS - 1.0).abs() < 1e-5,
         "{fastest}"

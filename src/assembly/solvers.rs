@@ -61,7 +61,7 @@ pub fn write_inputs(
         inputs.write(&target)?;
         written.push(target);
     }
-    if pairing.particles == ParticleBackend::Openfoam {
+    if pairing.particles_of(case) == ParticleBackend::Openfoam {
         let target = folder.join("openfoam-parcels");
         parcel_case(case, prepared, starts.particles.ranks).write(&target)?;
         written.push(target);
@@ -109,7 +109,7 @@ pub fn programs(case: &Case, pairing: Pairing) -> Result<Vec<PathBuf>, PartError
     if pairing.particles_of(case) == ParticleBackend::Liggghts {
         found.push(liggghts::find()?);
     }
-    if pairing.particles == ParticleBackend::Openfoam {
+    if pairing.particles_of(case) == ParticleBackend::Openfoam {
         found.push(openfoam::parcels::find()?);
     }
     Ok(found)

@@ -165,7 +165,7 @@ pub(super) fn verdict(comparison: &Comparison) -> String {
     if !short.is_empty() {
         let _ = write!(
             text,
-            " Stopped early: {}: let them go on to the end (`calcine resume DIR`).",
+            " Stopped early: {}: let them go on to the end (`calcine run --resume DIR`).",
             short.join(", ")
         );
     }

@@ -8,6 +8,7 @@ use super::equation::{self, ThirdBody};
 use super::fault::{Fault, fault};
 use super::file::{self, MechanismFile, ParsedReaction};
 use super::units::{self, MechanismUnits};
+use crate::fortran::number;
 
 /// Words after a reaction that are known and not read.
 const REFUSED: &[&str] = &[
@@ -137,12 +138,6 @@ fn draft(bare: &str, line: usize) -> Result<Draft, Fault> {
         efficiencies: Vec::new(),
         duplicate: false,
     })
-}
-
-/// A number, with FORTRAN's exponents too.
-fn number(word: &str) -> Option<f64> {
-    let number: f64 = word.replace(['D', 'd'], "E").parse().ok()?;
-    number.is_finite().then_some(number)
 }
 
 /// A line such as `LOW/1E20 -1 5E4/ H2O/6/ CO2/2/ DUP`.

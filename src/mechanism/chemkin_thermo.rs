@@ -4,6 +4,7 @@ use calcine_coupler::physics::thermo::{Element, Nasa7};
 
 use super::fault::{Fault, fault};
 use super::file::Thermo;
+use crate::fortran;
 
 /// Columns of the elements on the first card.
 const ELEMENTS: [(usize, usize); 5] = [(24, 29), (29, 34), (34, 39), (39, 44), (73, 78)];
@@ -65,13 +66,13 @@ fn columns(card: &str, from: usize, to: usize) -> String {
     card.chars().skip(from).take(to - from).collect()
 }
 
-fn number(text: &str, line: usize, name: &str, what: &str) -> Result<f64, Fault> {
-    // FORTRAN's exponents, and blanks within numbers such as "1.0E 02".
+/// A number of a species that is read for this.
+pub(super) fn number(text: &str, line: usize, name: &str, what: &str) -> Result<f64, Fault> {
+    // Blanks stand within numbers such as "1.0E 02".
     let bare: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-    let bare = bare.replace(['D', 'd'], "E");
-    match bare.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => fault(
+    match fortran::number(&bare) {
+        Some(number) => Ok(number),
+        None => fault(
             line,
             format!("{name} has \"{text}\" for {what}, which is not a number"),
         ),

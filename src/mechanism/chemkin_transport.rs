@@ -4,6 +4,7 @@
 
 use calcine_coupler::physics::thermo::LennardJones;
 
+use super::chemkin_thermo;
 use super::fault::{Fault, fault};
 
 /// Names of the numbers behind a species' name.
@@ -64,16 +65,7 @@ fn molecule(name: &str, words: &[&str], line: usize) -> Result<Molecule, Fault> 
         return fault(line, what);
     }
     for ((number, word), what) in numbers.iter_mut().zip(words).zip(NUMBERS) {
-        // FORTRAN's exponents.
-        *number = match word.replace(['D', 'd'], "E").parse::<f64>() {
-            Ok(number) if number.is_finite() => number,
-            _ => {
-                return fault(
-                    line,
-                    format!("{name} has \"{word}\" for {what}, which is not a number"),
-                );
-            }
-        };
+        *number = chemkin_thermo::number(word, line, name, what)?;
     }
     let [shape, well_depth, diameter, ..] = numbers;
     if ![0.0, 1.0, 2.0].contains(&shape) {

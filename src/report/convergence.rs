@@ -33,58 +33,60 @@ pub(super) fn converged(summary: &Summary) -> String {
 
 pub(super) fn residuals(series: &Series) -> String {
     let time = series.column("process_time");
-    let curve = |label: &str, name: &str, number| Curve {
-        label: label.into(),
-        colour: colour::line(number),
-        x: time,
-        y: series.column(name),
-        stroke: Stroke::Solid,
-    };
-    let plot = |title: &str, logarithmic, curves| {
+    let plot = |title: &str, columns: &[(&str, &str)]| {
+        let curve = |(number, &(label, name)): (usize, &(&str, &str))| Curve {
+            label: label.into(),
+            colour: colour::line(number),
+            x: time,
+            y: series.column(name),
+            stroke: Stroke::Solid,
+        };
         let plot = Plot {
             title: title.into(),
             x_label: TIME,
-            logarithmic,
+            logarithmic: true,
             above: None,
             band: None,
-            curves,
+            curves: columns.iter().enumerate().map(curve).collect(),
         };
         plot.render()
     };
-    let left = plot(
-        "Residuals of the window",
-        true,
-        vec![
-            curve("residual", "gas.residual", 0),
-            curve("volume residual", "gas.volume_residual", 1),
-        ],
-    );
-    let right = plot(
-        "Iterations of the window",
-        true,
-        vec![
-            curve("outer", "gas.outer_iterations", 0),
-            curve("linear", "gas.linear_iterations", 1),
-        ],
-    );
-    let errors = plot(
-        "Estimated error of the window's step",
-        true,
-        vec![
-            curve("velocity", "step.velocity_error", 0),
-            curve("temperature", "step.temperature_error", 1),
-            curve("composition", "step.composition_error", 2),
-        ],
-    );
-    let lengths = plot(
-        "Window in s of motion time, and its Courant number",
-        true,
-        vec![
-            curve("window", "step.motion_window", 0),
-            curve("Courant number", "step.courant", 1),
-        ],
-    );
-    format!("<div class=\"plots\">{left}{right}{errors}{lengths}</div>")
+    let plots = [
+        (
+            "Residuals of the window",
+            &[
+                ("residual", "gas.residual"),
+                ("volume residual", "gas.volume_residual"),
+            ][..],
+        ),
+        (
+            "Iterations of the window",
+            &[
+                ("outer", "gas.outer_iterations"),
+                ("linear", "gas.linear_iterations"),
+            ],
+        ),
+        (
+            "Estimated error of the window's step",
+            &[
+                ("velocity", "step.velocity_error"),
+                ("temperature", "step.temperature_error"),
+                ("composition", "step.composition_error"),
+            ],
+        ),
+        (
+            "Window in s of motion time, and its Courant number",
+            &[
+                ("window", "step.motion_window"),
+                ("Courant number", "step.courant"),
+            ],
+        ),
+    ];
+    let html: String = plots
+        .iter()
+        .map(|(title, columns)| plot(title, columns))
+        .collect();
+    format!("<div class=\"plots\">{html}</div>")
 }
 
 /// Lengths of windows and errors of their steps, in words.

@@ -363,7 +363,7 @@ void run(const argList& args, calcine::link& link)
         IOobject("calcineGas", runTime.constant(), mesh, IOobject::MUST_READ)
     );
     calcine::gas gas(mesh, properties, numbers);
-    calcine::introduction own;
+    calcine::introduction own(calcine::introduce(properties, mesh, numbers));
     if (args.found("resume"))
     {
         own.origin = args.opt<fileName>("resume");
@@ -375,15 +375,9 @@ void run(const argList& args, calcine::link& link)
         gas.takeOver(own.origin);
     }
 
-    own.version = std::to_string(OPENFOAM);
-    own.caseHash = properties.get<string>("caseHash");
-    own.meshHash = calcine::meshHash(mesh, numbers);
-    own.cells = numbers.allCells;
-    own.ranks = Pstream::nProcs();
     optionalColumns columns;
     for (const string& column : properties.get<stringList>("catalogue"))
     {
-        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
         columns.answersCommits = columns.answersCommits || column.compare(0, 10, "committed ") == 0;
         columns.bedEddies = columns.bedEddies || column.compare(0, 18, "start eddy_energy ") == 0;
     }

@@ -113,8 +113,8 @@ void Foam::calcine::gas::step(report& result)
         result.residual = predictVelocity(rho, result);
         result.residual = max(result.residual, assemblePressure(rho, outer == 1));
         pace.judge(outer - 1, result.residual);
-        // Friction at walls and what transport does at faces follow a sequence of more than two corrections (native-solver/src/gas/friction.rs).
-        follows_ = pace.corrections() > 2;
+        // Friction at walls and what transport does at faces follow a longer sequence of corrections (native-solver/src/gas/friction.rs).
+        follows_ = pace.corrections() > holding_;
         holdFriction();
         if (oblique_ && outer == 1)
         {

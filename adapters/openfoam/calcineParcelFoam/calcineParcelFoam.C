@@ -164,7 +164,7 @@ void run(const argList& args, calcine::link& link)
     (
         IOobject("calcineParcels", runTime.constant(), mesh, IOobject::MUST_READ)
     );
-    calcine::introduction own;
+    calcine::introduction own(calcine::introduce(properties, mesh, numbers));
     calcine::parcelRows start;
     if (args.found("resume"))
     {
@@ -179,15 +179,10 @@ void run(const argList& args, calcine::link& link)
 
     own.role = "particles";
     own.name = "OpenFOAM parcels";
-    own.version = std::to_string(OPENFOAM);
-    own.caseHash = properties.get<string>("caseHash");
-    own.meshHash = calcine::meshHash(mesh, numbers);
     own.cells = parcels.size();
-    own.ranks = Pstream::nProcs();
     optionalColumns columns;
     for (const string& column : properties.get<stringList>("catalogue"))
     {
-        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
         columns.weights = columns.weights || column.compare(0, 13, "state weight ") == 0;
         columns.movingDrag = columns.movingDrag || column.compare(0, 23, "start drag_coefficient ") == 0;
     }

@@ -1,6 +1,9 @@
 #include "process.H"
+#include "meshIdentity.H"
+
 #include "error.H"
 #include "Pstream.H"
+#include "stringList.H"
 
 #include <cstdlib>
 #include <iostream>
@@ -35,6 +38,27 @@ std::string words(const error& what, const std::string& place)
 }
 
 } // End anonymous namespace
+
+
+Foam::calcine::introduction Foam::calcine::introduce
+(
+    const dictionary& properties,
+    const polyMesh& mesh,
+    const addressing& numbers
+)
+{
+    introduction own;
+    own.version = std::to_string(OPENFOAM);
+    own.caseHash = properties.get<string>("caseHash");
+    own.meshHash = meshHash(mesh, numbers);
+    own.cells = numbers.allCells;
+    own.ranks = Pstream::nProcs();
+    for (const string& column : properties.get<stringList>("catalogue"))
+    {
+        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
+    }
+    return own;
+}
 
 
 int Foam::calcine::process(const std::string& name, const std::function<void(link&)>& work)

@@ -1,4 +1,5 @@
 #include "stockGas.H"
+#include "process.H"
 #include "meshIdentity.H"
 #include "fvc.H"
 #include "IOdictionary.H"
@@ -73,17 +74,7 @@ Foam::calcine::stockGas::stockGas(const fvMesh& mesh)
     );
     const scalarField one(1, 298.15), pressure(1, thermo_.p()[0]);
     reference_ = thermo_.he(pressure, one, labelList(1, 0))()[0];
-    introduction own;
-    own.version = std::to_string(OPENFOAM);
-    own.caseHash = properties.get<string>("caseHash");
-    own.meshHash = meshHash(mesh, numbers);
-    own.cells = numbers.allCells;
-    own.ranks = 1;
-    for (const string& column : properties.get<stringList>("catalogue"))
-    {
-        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
-    }
-    link_.greet(own);
+    link_.greet(introduce(properties, mesh, numbers));
     link_.claim(numbers.cells);
     remember();
 }

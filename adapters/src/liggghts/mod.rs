@@ -8,11 +8,12 @@ pub mod template;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::error::PartError;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::hello::{NEW, hash_text, particles_hash};
 use calcine_wire::{Catalogue, Hello};
 
+use crate::checkpoint;
 use crate::find::find_program;
 use crate::launch::{Launcher, Program};
 use crate::liggghts::inputs::{Inputs, SCRIPT};
@@ -65,10 +66,7 @@ impl LiggghtsLaunch<'_> {
         let mut arguments = vec![SCRIPT.into(), launch.case_hash.clone().into()];
         let mut origin = NEW.to_owned();
         if let Some(folder) = &launch.resume {
-            let file = std::path::absolute(folder.join(RESTART)).map_err(|error| {
-                let message = format!("the checkpoint {} cannot be used", folder.display());
-                PartError::new(NAME, FailureKind::Io, message).caused_by(error)
-            })?;
+            let file = checkpoint::absolute(NAME, &folder.join(RESTART))?;
             origin = file.to_string_lossy().into_owned();
             arguments.push(file.into());
         }
@@ -88,23 +86,21 @@ impl LiggghtsLaunch<'_> {
                 launch.inputs.moving_drag,
             ),
         };
+        let program = Program {
+            path: host,
+            arguments,
+            directory: launch.folder,
+            environment: Vec::new(),
+        };
         let solver = ExternalSolver::launch(
-            Launch {
-                name: NAME.into(),
-                program: Program {
-                    path: host,
-                    arguments,
-                    directory: launch.folder,
-                    environment: Vec::new(),
-                },
-                launcher: launch.launcher,
-                log: launch.log,
+            Launch::of_own(
+                NAME,
+                program,
+                launch.launcher,
+                launch.log,
                 hello,
-                optional: Vec::new(),
-                cells: None,
-                handshake: launch.deadline,
-                deadline: launch.deadline,
-            },
+                launch.deadline,
+            ),
             supervisor,
         )?;
         LinkedParticles::new(NAME, solver, setup, LARGEST_ID)

@@ -29,6 +29,7 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::Hello;
 use calcine_wire::hello::NEW;
 
+use crate::checkpoint;
 use crate::find::find_program;
 use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program};
@@ -132,10 +133,7 @@ impl OpenfoamLaunch<'_> {
         let mut origin = NEW.to_owned();
         for (option, folder) in given {
             let Some(folder) = folder else { continue };
-            let folder = std::path::absolute(folder).map_err(|error| {
-                let message = format!("the checkpoint {} cannot be used", folder.display());
-                PartError::new(NAME, FailureKind::Io, message).caused_by(error)
-            })?;
+            let folder = checkpoint::absolute(NAME, folder)?;
             origin = folder.to_string_lossy().into_owned();
             arguments.extend([option.into(), folder.into()]);
         }
@@ -157,17 +155,14 @@ impl OpenfoamLaunch<'_> {
             directory: launch.folder,
         };
         let solver = ExternalSolver::launch(
-            Launch {
-                name: NAME.into(),
+            Launch::of_own(
+                NAME,
                 program,
-                launcher: launch.launcher,
-                log: launch.log,
+                launch.launcher,
+                launch.log,
                 hello,
-                optional: Vec::new(),
-                cells: None,
-                handshake: launch.deadline,
-                deadline: launch.deadline,
-            },
+                launch.deadline,
+            ),
             supervisor,
         )?;
         LinkedGas::new(solver, launch.setup, launch.mesh, !launch.solver.is_stock())

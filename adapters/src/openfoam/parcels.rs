@@ -2,7 +2,7 @@
 //! (`basicKinematicMPPICCloud`) in a case that is generated here. Forces on parcels are Calcine's.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -17,6 +17,7 @@ pub use super::names::PARCEL_PROGRAM as PROGRAM;
 use super::names::PARCELS as NAME;
 use super::parcel_case::ParcelCase;
 use super::{environment, identity, without_spaces};
+use crate::checkpoint;
 use crate::find::find_program;
 use crate::launch::{Launcher, Program};
 use crate::particles::{self, LinkedParticles};
@@ -76,7 +77,7 @@ impl ParcelLaunch<'_> {
         let mut origin = NEW.to_owned();
         if let Some(folder) = &launch.resume {
             without_spaces(NAME, folder)?;
-            let folder = std::path::absolute(folder).map_err(|error| unusable(folder, error))?;
+            let folder = checkpoint::absolute(NAME, folder)?;
             origin = folder.to_string_lossy().into_owned();
             arguments.extend(["-resume".into(), folder.into()]);
         }
@@ -99,17 +100,14 @@ impl ParcelLaunch<'_> {
             directory: launch.folder,
         };
         let solver = ExternalSolver::launch(
-            Launch {
-                name: NAME.into(),
+            Launch::of_own(
+                NAME,
                 program,
-                launcher: launch.launcher,
-                log: launch.log,
+                launch.launcher,
+                launch.log,
                 hello,
-                optional: Vec::new(),
-                cells: None,
-                handshake: launch.deadline,
-                deadline: launch.deadline,
-            },
+                launch.deadline,
+            ),
             supervisor,
         )?;
         let parcels = LinkedParticles::new(NAME, solver, launch.setup, LARGEST_ID)?;
@@ -118,9 +116,4 @@ impl ParcelLaunch<'_> {
             None => Ok(parcels),
         }
     }
-}
-
-fn unusable(folder: &Path, error: std::io::Error) -> PartError {
-    let message = format!("the checkpoint {} cannot be used", folder.display());
-    PartError::new(NAME, FailureKind::Io, message).caused_by(error)
 }

@@ -45,6 +45,31 @@ pub struct Launch {
     pub deadline: Duration,
 }
 
+impl Launch {
+    /// Of a solver of Calcine's own, which has the columns and the mesh that `hello` tells, and no longer for its handshake than for
+    /// anything else.
+    pub fn of_own(
+        name: &str,
+        program: Program,
+        launcher: Launcher,
+        log: PathBuf,
+        hello: Hello,
+        deadline: Duration,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            program,
+            launcher,
+            log,
+            hello,
+            optional: Vec::new(),
+            cells: None,
+            handshake: deadline,
+            deadline,
+        }
+    }
+}
+
 /// How long somebody may take who starts a solver by hand.
 const BY_HAND: Duration = Duration::from_secs(24 * 3600);
 

@@ -84,14 +84,25 @@ pub struct Equations {
     watch: Stopwatch,
     /// Windows so far.
     windows: u32,
+    best: Best,
 }
 
-/// The best that an outer loop had when the number of its pressure corrections changed.
-#[derive(Debug)]
-struct BeforeLonger {
+/// The best that an outer loop had when the number of its pressure corrections changed, in memory that is kept.
+#[derive(Debug, Default)]
+struct Best {
     state: GasState,
-    /// Residual of momentum and continuity.
-    flow: f64,
+    /// Residual of momentum and continuity; `None` where there is no such state.
+    flow: Option<f64>,
+}
+
+impl Best {
+    /// Takes up a state that is better than what is there.
+    fn offer(&mut self, state: &GasState, flow: f64) {
+        if self.flow.is_none_or(|best| flow < best) {
+            self.state.take(state);
+            self.flow = Some(flow);
+        }
+    }
 }
 
 impl Equations {
@@ -114,6 +125,7 @@ impl Equations {
             phases: GasPhases::default(),
             watch: Stopwatch::new(),
             windows: 0,
+            best: Best::default(),
         }
     }
 
@@ -142,7 +154,7 @@ impl Equations {
         self.watch = Stopwatch::of_window(self.windows, frame.grid.cells());
         self.assess_flow(frame, now);
         let mut pace = Pace::new(controls, self.flow);
-        let mut before: Option<BeforeLonger> = None;
+        self.best.flow = None;
         for outer in 1..=controls.outer_iterations.max(1) {
             let iterated = self.iterate(frame, controls, pace.corrections, now);
             convergence.outer_iterations = outer;
@@ -156,10 +168,11 @@ impl Equations {
             match iterated.and_then(|iterations| sense.map(|()| iterations)) {
                 Ok(iterations) => convergence.linear_iterations += iterations,
                 Err(failure) => {
-                    let Some(kept) = before.take() else {
+                    if self.best.flow.is_none() {
                         return Err(failure);
-                    };
-                    convergence.residual = self.go_back(frame, &mut pace, &kept, now);
+                    }
+                    convergence.residual = self.go_back(frame, now);
+                    pace.go_back(self.flow);
                     continue;
                 }
             }
@@ -172,17 +185,13 @@ impl Equations {
                 // What is left of continuity is in few cells.
                 self.closer *= 0.1;
             }
-            let better = |kept: &BeforeLonger| self.flow < kept.flow;
-            if pace.judge(controls, outer, self.flow) && before.as_ref().is_none_or(better) {
-                before = Some(BeforeLonger {
-                    state: now.clone(),
-                    flow: self.flow,
-                });
+            if pace.judge(controls, outer, self.flow) {
+                self.best.offer(now, self.flow);
             }
         }
         // What longer sequences made worse until the end.
-        if let Some(kept) = before.filter(|kept| !convergence.converged && self.flow > kept.flow) {
-            convergence.residual = self.go_back(frame, &mut pace, &kept, now);
+        if !convergence.converged && self.best.flow.is_some_and(|best| self.flow > best) {
+            convergence.residual = self.go_back(frame, now);
         }
         let linear = LinearTolerances::new(controls, &self.continuity);
         convergence.linear_iterations += self.close(frame, linear.scalars, now);
@@ -194,19 +203,12 @@ impl Equations {
         Ok(convergence)
     }
 
-    /// Takes up what was there before longer sequences of corrections; its residual.
-    fn go_back(
-        &mut self,
-        frame: &AttemptFrame<'_>,
-        pace: &mut Pace,
-        kept: &BeforeLonger,
-        now: &mut GasState,
-    ) -> f64 {
-        now.take(&kept.state);
+    /// Takes up the best state, once; its residual.
+    fn go_back(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> f64 {
+        now.take(&self.best.state);
+        self.best.flow = None;
         self.pressure.carry_by(frame, &now.pressure_gradient);
-        let residual = self.assess(frame, now);
-        pace.go_back(self.flow);
-        residual
+        self.assess(frame, now)
     }
 
     /// Assembles momentum with the fields at hand; how far these are from solving it and continuity.

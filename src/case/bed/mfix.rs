@@ -3,6 +3,7 @@
 //! Lengths are in m, as MFiX has them with `units = 'SI'`. MFiX reads a head by the numbers of its lines, and so does this.
 
 use super::sheet::{Fault, Row, Sheet};
+use crate::fortran;
 
 /// Columns of version 1.0.
 const PLAIN: [&str; 8] = ["x", "y", "z", "radius", "density", "vx", "vy", "vz"];
@@ -175,9 +176,9 @@ fn in_data(line: usize, name: &str, words: &[&str]) -> Result<bool, Fault> {
 /// Numbers as Fortran writes them, with exponents after E or D, parted by blanks or commas.
 fn numbers(line: usize, content: &str) -> Result<Vec<f64>, Fault> {
     let words = content.split(|letter: char| letter.is_whitespace() || letter == ',');
-    let number = |word: &str| match word.replace(['d', 'D'], "e").parse() {
-        Ok(value) => Ok(value),
-        Err(_) => at(line, format!("\"{word}\" is not a number")),
+    let number = |word: &str| match fortran::number(word) {
+        Some(value) => Ok(value),
+        None => at(line, format!("\"{word}\" is not a number")),
     };
     words.filter(|word| !word.is_empty()).map(number).collect()
 }

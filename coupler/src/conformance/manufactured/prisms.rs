@@ -11,12 +11,8 @@ pub fn prism_box(spec: &BoxSpec, displaced: impl Fn(Vec3) -> Vec3) -> Result<Mes
     let upright = box_mesh(spec)?;
     let points = upright.topology().points.clone();
     let [nx, ny, nz] = spec.cells;
-    let mut names: Vec<&str> = Vec::new();
-    for name in &spec.patches {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
+    let patches = upright.patches().iter();
+    let names: Vec<&str> = patches.map(|patch| patch.name.as_str()).collect();
     let patch = |side: usize| {
         let found = names.iter().position(|name| *name == spec.patches[side]);
         found.unwrap_or_default()
