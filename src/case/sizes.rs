@@ -62,8 +62,7 @@ fn views(case: &Case) -> f64 {
     let Some(radiation) = &case.laws.radiation else {
         return 0.0;
     };
-    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) =
-        radiation.view_factors;
+    let range = radiation.view_factors.range();
     let solid = case.particles.iter();
     let solid = solid.filter_map(|one| Some(random(one)?.solid_fraction));
     let solid = solid.reduce(f64::max);
@@ -78,7 +77,7 @@ fn views(case: &Case) -> f64 {
     let within = 0.5 * 8.0 * solid.unwrap_or(DENSE) * (range * largest / mean).powi(3);
     match radiation.view_factors {
         ViewFactors::Rays { .. } => within.min(IN_SIGHT),
-        ViewFactors::Distance { .. } => within,
+        ViewFactors::Distance { .. } | ViewFactors::Neighbours { .. } => within,
     }
 }
 

@@ -91,20 +91,30 @@ impl HeatCapacity {
     /// c_p in J/kg/K and enthalpy in J/kg, counted from the first point, at temperatures in K side by side.
     #[inline(always)]
     pub fn lanes<const N: usize>(&self, temperature: Lanes<N>) -> [Lanes<N>; 2] {
-        let (first, capacity) = self.points[0];
-        let [mut from, mut base] = [first, capacity].map(Lanes::all);
-        let (mut slope, mut enthalpy) = (Lanes::default(), Lanes::default());
-        let known = self.points.iter().zip(&self.slopes).zip(&self.enthalpy);
-        for (k, ((point, rise), held)) in known.enumerate() {
-            // Where all are below, they are below the points that follow.
-            if k > 0 && !temperature.any(|t| t >= point.0) {
-                break;
+        let of = |place: usize| {
+            let (from, capacity) = self.points[place];
+            [from, capacity, self.slopes[place], self.enthalpy[place]].map(Lanes::all)
+        };
+        let next = self.points.partition_point(|one| one.0 <= temperature[0]);
+        let place = next.saturating_sub(1);
+        let to = self.points.get(next).map_or(f64::INFINITY, |one| one.0);
+        let between = self.points[place].0..to;
+        let [mut from, mut base, mut slope, mut enthalpy] = of(place);
+        if temperature.any(|t| !between.contains(&t)) {
+            // Not all are between the same two points. Below the first one nothing rises.
+            [from, base, ..] = of(0);
+            (slope, enthalpy) = (Lanes::default(), Lanes::default());
+            for (k, point) in self.points.iter().enumerate() {
+                // Where all are below, they are below the points that follow.
+                if k > 0 && !temperature.any(|t| t >= point.0) {
+                    break;
+                }
+                let [at, own, rise, held] = of(k);
+                from = temperature.if_below(at, from, at);
+                base = temperature.if_below(at, base, own);
+                slope = temperature.if_below(at, slope, rise);
+                enthalpy = temperature.if_below(at, enthalpy, held);
             }
-            let [at, of, rise, held] = [point.0, point.1, *rise, *held].map(Lanes::all);
-            from = temperature.if_below(at, from, at);
-            base = temperature.if_below(at, base, of);
-            slope = temperature.if_below(at, slope, rise);
-            enthalpy = temperature.if_below(at, enthalpy, held);
         }
         let beyond = temperature - from;
         let capacity = base + slope * beyond;
@@ -177,11 +187,18 @@ mod tests {
     #[test]
     fn side_by_side_it_is_what_it_is_alone() {
         for law in [alumina(), HeatCapacity::constant(840.0)] {
-            let all = [100.0, 300.0, 450.0, 600.0, 700.0, 1200.0, 1500.0, 299.0];
-            let [capacity, enthalpy] = law.lanes(Lanes(all));
-            for (k, t) in all.into_iter().enumerate() {
-                assert!((capacity[k] / law.at(t) - 1.0).abs() < 1e-14, "{t}");
-                assert!((enthalpy[k] - law.enthalpy(t)).abs() < 1e-9, "{t}");
+            // Apart, between two points, beyond the last one and before the first one.
+            for all in [
+                [100.0, 300.0, 450.0, 600.0, 700.0, 1200.0, 1500.0, 299.0],
+                [600.0, 601.0, 700.0, 1199.0, 800.0, 900.0, 600.0, 1000.0],
+                [1200.0, 1500.0, 1201.0, 3000.0, 1e4, 1300.0, 1200.0, 1400.0],
+                [1.0, 299.0, 100.0, 298.0, 150.0, 200.0, 250.0, 77.0],
+            ] {
+                let [capacity, enthalpy] = law.lanes(Lanes(all));
+                for (k, t) in all.into_iter().enumerate() {
+                    assert!((capacity[k] / law.at(t) - 1.0).abs() < 1e-14, "{t}");
+                    assert!((enthalpy[k] - law.enthalpy(t)).abs() < 1e-9, "{t}");
+                }
             }
         }
     }

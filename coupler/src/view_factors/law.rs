@@ -9,6 +9,8 @@ pub enum RadiationLaw {
     Rays,
     /// By view factors from the distance alone.
     Distance,
+    /// Evenly over the surfaces of neighbours.
+    Neighbours,
     /// Not at all.
     None,
 }
@@ -34,6 +36,16 @@ pub static DISTANCE: LawEntry<RadiationLaw> = LawEntry {
     make: |_| Box::new(RadiationLaw::Distance),
 };
 
+/// View factors by the surfaces of neighbours.
+pub static NEIGHBOURS: LawEntry<RadiationLaw> = LawEntry {
+    name: "neighbours",
+    summary: "To all particles within the range by their share of the surface there, as XDEM has it; for comparison with it.",
+    source: "Copertaro et al., Engineering Journal 20(5) (2016) 187, doi 10.4186/ej.2016.20.5.187, eq 17",
+    parameters: &[],
+    tables: &[],
+    make: |_| Box::new(RadiationLaw::Neighbours),
+};
+
 /// No radiation.
 static NO_RADIATION: LawEntry<RadiationLaw> = LawEntry {
     name: NONE,
@@ -45,4 +57,5 @@ static NO_RADIATION: LawEntry<RadiationLaw> = LawEntry {
 };
 
 /// The laws of radiation that a case may choose.
-pub static RADIATION_LAWS: &[&LawEntry<RadiationLaw>] = &[&RAYS, &DISTANCE, &NO_RADIATION];
+pub static RADIATION_LAWS: &[&LawEntry<RadiationLaw>] =
+    &[&RAYS, &DISTANCE, &NEIGHBOURS, &NO_RADIATION];

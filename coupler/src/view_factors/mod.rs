@@ -56,14 +56,29 @@ pub enum ViewFactors {
         /// Particles see each other up to this distance of centres, in largest diameters.
         range: f64,
     },
+    /// Of particles within a distance, each by its share of their surface.
+    Neighbours {
+        /// Particles see each other up to this distance of centres, in largest diameters.
+        range: f64,
+    },
 }
 
 impl ViewFactors {
+    /// Distance of centres, in largest diameters, up to which particles see each other.
+    pub fn range(&self) -> f64 {
+        match *self {
+            Self::Rays { range, .. } | Self::Distance { range } | Self::Neighbours { range } => {
+                range
+            }
+        }
+    }
+
     /// What the law declares.
     pub fn law(&self) -> &'static LawEntry<RadiationLaw> {
         match self {
             Self::Rays { .. } => &law::RAYS,
             Self::Distance { .. } => &law::DISTANCE,
+            Self::Neighbours { .. } => &law::NEIGHBOURS,
         }
     }
 }
@@ -119,12 +134,11 @@ pub fn views(scene: &RadiationScene<'_>, view_factors: ViewFactors) -> ExchangeA
     let count = scene.centres.len();
     let whole = scene.radii.iter().map(|&r| sphere::surface(r));
     let surface: Vec<f64> = match view_factors {
-        ViewFactors::Rays { .. } => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
         ViewFactors::Distance { .. } => whole.collect(),
+        _ => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
     };
     let largest = scene.radii.iter().copied().fold(0.0, f64::max);
-    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = view_factors;
-    let reach = 2.0 * largest * range;
+    let reach = 2.0 * largest * view_factors.range();
     let open = Open::new(scene.radii);
     let mut made = ExchangeAreas {
         own: vec![0.0; count],
@@ -148,6 +162,7 @@ pub fn views(scene: &RadiationScene<'_>, view_factors: ViewFactors) -> ExchangeA
             collect(scene, &open, &seen, &mut made);
         }
         ViewFactors::Distance { .. } => by_distance(scene, &open, reach, &mut made),
+        ViewFactors::Neighbours { .. } => by_neighbours(scene, reach, &mut made),
     }
     balance::balance(&mut made);
     made
@@ -386,6 +401,24 @@ fn by_distance(scene: &RadiationScene<'_>, open: &Open, reach: f64, made: &mut E
             }
         }
     }
+}
+
+/// Views of all particles within reach, each by its share of the surface there; walls and surroundings are not seen.
+fn by_neighbours(scene: &RadiationScene<'_>, reach: f64, made: &mut ExchangeAreas) {
+    let pairs = pairs_around(scene.radii, scene.centres, reach);
+    let surface = &made.surface;
+    let mut around = vec![0.0; surface.len()];
+    for &[a, b] in &pairs {
+        let (a, b) = (a as usize, b as usize);
+        around[a] += surface[b];
+        around[b] += surface[a];
+    }
+    let pair = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (a as usize, b as usize);
+        let mean = 0.5 * (around[a] + around[b]);
+        ([a, b], surface[a] * surface[b] / mean)
+    };
+    made.pairs = pairs.iter().map(pair).collect();
 }
 
 /// Points of a sphere and directions from there, evenly spread in all four dimensions: the additive

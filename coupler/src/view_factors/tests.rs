@@ -260,3 +260,54 @@ fn grey_spheres_exchange_what_is_left_after_reflections() {
     let own = made.own[0] / (4.0 * PI);
     assert!(own > 0.0 && own < 0.25 * 0.5 * 0.2 * 0.044_119, "{own}");
 }
+
+const NEIGHBOURS: ViewFactors = ViewFactors::Neighbours { range: 3.0 };
+
+#[test]
+fn neighbours_share_what_equal_spheres_see_evenly_and_the_rest_is_not_seen() {
+    // Four that see each other, emissivity 0.9: a third of it each. Another one is out of their reach.
+    let mut centres: Vec<Vec3> = [[0.0, 0.0], [2.1, 0.0], [0.0, 2.1], [2.1, 2.1]]
+        .iter()
+        .map(|at| Vec3::new(at[0], at[1], 0.0))
+        .collect();
+    centres.push(Vec3::new(0.0, 0.0, 20.0));
+    let scene = RadiationScene {
+        radii: &[1.0; 5],
+        centres: &centres,
+        emissivity: &[0.9; 5],
+        walls: &[plane(Vec3::new(0.0, 0.0, -1.0), Vec3::z(), Some((0, 1.0)))],
+        reservoirs: 1,
+        beyond: None,
+    };
+    let made = views(&scene, NEIGHBOURS);
+    assert!(!made.radiosity && made.reservoirs.is_empty());
+    assert_eq!(made.pairs.len(), 6);
+    for &(_, area) in &made.pairs {
+        assert!(
+            (area / (0.9 * 4.0 * PI / 3.0) - 1.0).abs() < 1e-12,
+            "{area}"
+        );
+    }
+    assert_eq!(rows(&made)[4], 0.0);
+}
+
+#[test]
+fn neighbours_of_several_sizes_see_all_of_their_surface_and_each_other_alike() {
+    // Surfaces of 3, 4 and 5: the one symmetric matrix without a diagonal of these sums has (3 + 4 − 5)/2 = 1, 2 and 3.
+    let radii = [3.0_f64, 4.0, 5.0].map(|surface| (surface / (4.0 * PI)).sqrt());
+    let centres = [0.0, 1.4, 2.8].map(|x| Vec3::new(x, 0.0, 0.0));
+    let scene = RadiationScene {
+        radii: &radii,
+        centres: &centres,
+        emissivity: &[1.0; 3],
+        walls: &[],
+        reservoirs: 0,
+        beyond: None,
+    };
+    let made = views(&scene, NEIGHBOURS);
+    for (ends, exact) in [([0, 1], 1.0), ([0, 2], 2.0), ([1, 2], 3.0)] {
+        let found = made.pairs.iter().find(|pair| pair.0 == ends);
+        let area = found.map_or(0.0, |pair| pair.1);
+        assert!((area - exact).abs() < 1e-10, "{ends:?}: {area}");
+    }
+}

@@ -62,7 +62,9 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
     let surroundings = surroundings(&table, law);
     let own: &[&str] = match law {
         Some(RadiationLaw::Rays) => &["rays", "range", "refresh", "surroundings", "inside"],
-        Some(RadiationLaw::Distance) => &["range", "refresh", "surroundings", "inside"],
+        Some(RadiationLaw::Distance | RadiationLaw::Neighbours) => {
+            &["range", "refresh", "surroundings", "inside"]
+        }
         _ => &[],
     };
     for key in ["rays", "range", "refresh", "surroundings", "inside"] {
@@ -76,6 +78,7 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
     let view_factors = match law? {
         RadiationLaw::Rays => ViewFactors::Rays { rays, range },
         RadiationLaw::Distance => ViewFactors::Distance { range },
+        RadiationLaw::Neighbours => ViewFactors::Neighbours { range },
         RadiationLaw::None => return Some(None),
     };
     Some(Some(RadiationSpec {
@@ -99,10 +102,15 @@ fn surroundings(table: &TableReader<'_>, law: Option<RadiationLaw>) -> Option<Op
         return Some(None);
     }
     let schedule = table.schedule("surroundings")?;
-    if law == Some(RadiationLaw::Distance) {
+    let blind = match law {
+        Some(RadiationLaw::Distance) => Some("distance"),
+        Some(RadiationLaw::Neighbours) => Some("neighbours"),
+        _ => None,
+    };
+    if let Some(name) = blind {
         table.fail(
             "surroundings",
-            "does not go with law = \"distance\", which does not see where the bed ends",
+            &format!("does not go with law = \"{name}\", which does not see where the bed ends"),
             "write \"closed\", or law = \"view-factors\"",
         );
     }

@@ -251,17 +251,11 @@ impl RadialPhysics {
         let solid = self.reactant[index];
         let first = state.first[solid];
         out.by_amount.fill(Wide::default());
-        let mut all = Wide::default();
-        for lane in 0..LANES {
-            let (amount, first) = (state.amounts[solid][lane], first[lane]);
-            [all[lane], out.by_amount[solid][lane]] = if first <= 0.0 {
-                // A solid that others make goes by what there is of it.
-                [amount, 1.0]
-            } else {
-                let [value, slope] = conversion.of(amount / first);
-                [first * value, slope]
-            };
-        }
+        let amount = state.amounts[solid];
+        let [value, slope] = conversion.lanes(amount / first);
+        // A solid that others make goes by what there is of it.
+        let mut all = first.if_positive(first * value, amount);
+        out.by_amount[solid] = first.if_positive(slope, Wide::all(1.0));
         if backwards {
             let there = self.products(reaction, state, &mut out.by_amount_back);
             let forth = Wide::default();

@@ -54,10 +54,18 @@ impl RadialPhysics {
         for shell in 0..n {
             ws.held.porosity[shell] = ws.held.pores[shell] / ws.held.volume[shell];
         }
+        let law = &self.solid.conduction;
+        let everywhere = match law {
+            PorousConductivity::Stated => self.solid.conductivity.everywhere(),
+            PorousConductivity::Parallel { .. } => None,
+        };
         for node in 0..=n {
+            if let Some(value) = everywhere {
+                renew(mask, &mut ws.held.conductivity[node], Wide::all(value));
+                continue;
+            }
             let kelvin = ws.now.temperature[node];
             let porosity = ws.held.porosity[node.min(n - 1)];
-            let law = &self.solid.conduction;
             let mut found = Wide::default();
             for lane in 0..LANES {
                 if mask[lane] == 0.0 {

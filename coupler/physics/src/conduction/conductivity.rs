@@ -21,6 +21,14 @@ impl Conductivity {
         Self { points }
     }
 
+    /// The value in W/m/K that it has at all temperatures; `None` where it depends on them.
+    pub fn everywhere(&self) -> Option<f64> {
+        match self.points[..] {
+            [(_, value)] => Some(value),
+            _ => None,
+        }
+    }
+
     /// Conductivity in W/m/K at a temperature in K.
     pub fn at(&self, temperature: f64) -> f64 {
         linear(&self.points, temperature)
@@ -38,5 +46,7 @@ mod tests {
             assert!((iron.at(kelvin) - expected).abs() < 1e-12, "{kelvin}");
         }
         assert_eq!(Conductivity::constant(1.1).at(500.0), 1.1);
+        assert_eq!(Conductivity::constant(1.1).everywhere(), Some(1.1));
+        assert_eq!(iron.everywhere(), None);
     }
 }

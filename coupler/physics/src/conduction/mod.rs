@@ -13,7 +13,8 @@
 //! | [`Geometric`] | 2 k r, r² = 2 R* δ (circle of intersection) | √2 | 1 |
 //! | [`Lens`] | 2 k √A, A = π r², r² = 2 R* δ | √(2π) | √π |
 //!
-//! [`RoughContact`] puts the asperities of rough surfaces in series with the first.
+//! [`RoughContact`] puts the asperities of rough surfaces in series with the first; [`HalfPaths`] leaves out the constriction, so that it goes
+//! with δ and not with its root.
 //!
 //! Per area of contact, G = A/R_th, that is R_th = π r/(2 k) for the first two and √(π) r/(2 k) for the third.
 
@@ -23,6 +24,7 @@ mod cheng;
 mod conductivity;
 mod gap;
 mod geometric;
+mod half_paths;
 mod lens;
 mod model;
 mod none;
@@ -35,6 +37,7 @@ pub use cheng::Cheng;
 pub use conductivity::Conductivity;
 pub use gap::{GasGap, NoGap, SphereGap};
 pub use geometric::Geometric;
+pub use half_paths::HalfPaths;
 pub use lens::Lens;
 pub use model::{Conduction, SphereContact};
 pub use none::NoConduction;
@@ -48,6 +51,7 @@ pub static CONDUCTION_LAWS: &[&LawEntry<dyn Conduction>] = &[
     &batchelor_obrien::LAW,
     &geometric::LAW,
     &lens::LAW,
+    &half_paths::LAW,
     &rough::LAW,
     &none::LAW,
 ];

@@ -1,5 +1,7 @@
 //! Which law of conversion a reaction follows.
 
+use calcine_numerics::Lanes;
+
 use super::contracting_area::ContractingArea;
 use super::contracting_volume::ContractingVolume;
 use super::conversion_law::{ConversionLaw, TRACE};
@@ -40,6 +42,20 @@ impl Conversion {
             [steep * left, steep]
         }
     }
+
+    /// The same at shares side by side.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, left: Lanes<N>) -> [Lanes<N>; 2] {
+        if let Self::FirstOrder(_) = self {
+            // Its line through zero is the law itself.
+            return [left, Lanes::all(1.0)];
+        }
+        let mut all = [Lanes::default(); 2];
+        for lane in 0..N {
+            [all[0][lane], all[1][lane]] = self.of(left[lane]);
+        }
+        all
+    }
 }
 
 #[cfg(test)]
@@ -68,6 +84,17 @@ mod tests {
                     (slope - quotient).abs() < 1e-5 * slope.abs().max(1.0),
                     "{law:?} {w}: {slope} {quotient}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn shares_side_by_side_have_the_bits_of_each_by_itself() {
+        let left = [1.0, 0.3, TRACE, 0.3 * TRACE, 0.0, -1e-9, 1.2, 1e-300];
+        for law in ALL {
+            let [value, slope] = law.lanes(Lanes(left));
+            for lane in 0..left.len() {
+                assert_eq!([value[lane], slope[lane]], law.of(left[lane]), "{law:?}");
             }
         }
     }
