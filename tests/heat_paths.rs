@@ -59,9 +59,7 @@ fn two_particles_in_contact_relax_as_the_exponential_says() {
         ]),
     );
     // r_c = √(2.5e-3 · 1e-6) = 5e-5 m, G = 2 · 50 r_c = 5e-3 W/K; m c = 7870 π/6 1e-6 · 3 R/M.
-    let heat_capacity =
-        7870.0 * std::f64::consts::PI / 6.0 * 1e-6 * 3.0 * 8.314_462_618 / 0.055_845;
-    let rate = 2.0 * 5e-3 / heat_capacity;
+    let rate = 2.0 * 5e-3 / of_a_sphere();
     let (times, particles) = (series.column("process_time"), series.particles());
     let mut worst = 0.0_f64;
     for (k, time) in times.iter().enumerate() {
@@ -70,6 +68,62 @@ fn two_particles_in_contact_relax_as_the_exponential_says() {
     }
     println!("largest relative deviation over 300 s: {worst:.1e}");
     assert!(times.len() > 200 && worst < 1e-3, "{worst}");
+}
+
+/// Heat capacity in J/K of a sphere of `two-in-contact.toml`: 10 mm of iron by the law of Dulong and Petit.
+fn of_a_sphere() -> f64 {
+    7870.0 * std::f64::consts::PI / 6.0 * 1e-6 * 3.0 * 8.314_462_618 / 0.055_845
+}
+
+#[test]
+fn half_paths_conduct_as_two_rods_in_series_and_as_printed_half_as_much() {
+    // r² = 5² − 4.9995² mm², G = s π r² k/(2 d) with d = 9.999 mm.
+    let area = std::f64::consts::PI * (5e-3 * 5e-3 - 4.9995e-3 * 4.9995e-3);
+    for (factor, keys) in [(2.0, ""), (1.0, ", series_factor = 1")] {
+        let conduction = format!("laws.conduction={{ law = \"half-paths\"{keys} }}");
+        let words = [&conduction, "laws.radiation={ law = \"none\" }", "walls=[]"];
+        let (_, series, _) = run("tests/inputs/good/two-in-contact.toml", &set(&words));
+        let times = series.column("process_time");
+        let kelvin = last(&series);
+        let conductance = factor * area * 50.0 / (2.0 * 9.999e-3);
+        let exponent = -2.0 * conductance / of_a_sphere() * times[times.len() - 1];
+        let lost = 1.0 - (kelvin[1] - kelvin[0]) / 100.0;
+        let exact = -exponent.exp_m1();
+        println!("lost {lost}, exact {exact}");
+        assert!((lost / exact - 1.0).abs() < 1e-4, "{lost} {exact}");
+    }
+}
+
+#[test]
+fn two_neighbours_alone_radiate_all_to_each_other() {
+    let words = [
+        "laws.conduction={ law = \"none\" }",
+        "laws.radiation={ law = \"neighbours\", surroundings = \"closed\" }",
+        "materials.iron.emissivity=0.6",
+        "particles[1].temperature=1000 K",
+        "walls=[]",
+    ];
+    let (_, series, summary) = run("tests/inputs/good/two-in-contact.toml", &set(&words));
+    let times = series.column("process_time");
+    let found = last(&series);
+    // e A σ (T₂⁴ − T₁⁴) from one to the other, by Heun's steps.
+    let area = std::f64::consts::PI * 1e-4;
+    let rate = 0.6 * area * 5.670_374_419e-8 / of_a_sphere();
+    let (count, mut kelvin) = (3000, [300.0_f64, 1000.0]);
+    let step = times[times.len() - 1] / f64::from(count);
+    for _ in 0..count {
+        let flow = |at: [f64; 2]| rate * (at[1].powi(4) - at[0].powi(4));
+        let first = flow(kelvin);
+        let second = flow([kelvin[0] + step * first, kelvin[1] - step * first]);
+        let moved = 0.5 * step * (first + second);
+        kelvin = [kelvin[0] + moved, kelvin[1] - moved];
+    }
+    println!("{found:?}, exact {kelvin:?}");
+    for (found, exact) in found.iter().zip(kelvin) {
+        assert!((found - exact).abs() < 0.05, "{found} {exact}");
+    }
+    let energy = summary.ledger.lines["energy"].relative_error;
+    assert!(energy < 1e-12, "{energy}");
 }
 
 #[test]

@@ -107,6 +107,49 @@ fn stones_that_move_react_and_shrink_close_the_ledger_with_feed_and_discharge() 
     assert!(series.column("quantities.lime").len() > 15);
 }
 
+/// The same stones with shells, of 10 % pores and by a rate in their volume.
+const SHELLS: [&str; 6] = [
+    "time.end=24 s",
+    "materials.limestone.density=2440 kg/m^3",
+    "materials.limestone.size={ law = \"densities\", densities = { CaCO3 = \"2440 kg/m^3\", CaO = \"1700 kg/m^3\", Al2O3 = \"2440 kg/m^3\" }, \
+     least_diameter = \"4 mm\" }",
+    "materials.limestone.conductivity=0.6 W/m/K",
+    "materials.limestone.radial={ shells = 10, grading = 2, true_densities = { CaCO3 = \"2711 kg/m^3\", CaO = \"3340 kg/m^3\", Al2O3 = \
+     \"3970 kg/m^3\" }, pore_diameter = \"1 um\", tortuosity = 2, permeability = { law = \"constant\", value = \"1e-13 m^2\" } }",
+    "reactions=[{ name = \"calcination\", equation = \"CaCO3 <=> CaO + CO2\", law = \"first-order\", rate = { factor = 1.235e15, \
+     activation_energy = \"325.1 kJ/mol\" } }]",
+];
+
+#[test]
+fn stones_with_shells_that_move_and_shrink_close_the_ledger_in_every_pairing_and_on_two_ranks() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = [&SHELLS[..], &["materials.limestone.inside=radial"]].concat();
+    let own = run(&folder.path().join("own"), &set, &[]);
+    closes(&own);
+    assert!(value(&own, "lime") > 0.04 && value(&own, "least_diameter") < 7.95e-3);
+    let pairings: [(&str, &[&str]); 3] = [
+        (
+            "two-ranks",
+            &["--particles", "liggghts", "--ranks-particles", "2"],
+        ),
+        ("openfoam", &["--gas", "openfoam"]),
+        ("both", &["--gas", "openfoam", "--particles", "liggghts"]),
+    ];
+    for (name, options) in pairings {
+        println!("{name}");
+        let other = run(&folder.path().join(name), &set, options);
+        closes(&other);
+        for (quantity, most) in [("lime", 1e-4), ("mean_mass", 1e-5), ("mean_diameter", 1e-5)] {
+            let [one, other] = [&own, &other].map(|summary| value(summary, quantity));
+            println!("{quantity}: {one:.6e} {other:.6e}");
+            assert!(
+                (other / one - 1.0).abs() < most,
+                "{quantity}: {one} {other}"
+            );
+        }
+    }
+}
+
 #[test]
 fn the_acceleration_factor_does_not_show_in_what_has_reacted() {
     let folder = tempfile::tempdir().unwrap();

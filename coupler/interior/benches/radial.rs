@@ -217,7 +217,13 @@ fn main() {
             "grains of 156 um that react, windows of 1 s",
         ),
     ] {
-        for (threads, count) in [(1, 2000), (2, 2000), (1, 20_000), (1, 100_000)] {
+        for (threads, count) in [
+            (1, 2000),
+            (2, 2000),
+            (1, 20_000),
+            (1, 100_000),
+            (2, 100_000),
+        ] {
             if count > 2000
                 && (span > 1.0 || windows == 0 || std::env::var_os("CALCINE_BENCH_LARGE").is_none())
             {
