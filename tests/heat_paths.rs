@@ -81,7 +81,11 @@ fn half_paths_conduct_as_two_rods_in_series_and_as_printed_half_as_much() {
     let area = std::f64::consts::PI * (5e-3 * 5e-3 - 4.9995e-3 * 4.9995e-3);
     for (factor, keys) in [(2.0, ""), (1.0, ", series_factor = 1")] {
         let conduction = format!("laws.conduction={{ law = \"half-paths\"{keys} }}");
-        let words = [&conduction, "laws.radiation={ law = \"none\" }", "walls=[]"];
+        let words = [
+            conduction.as_str(),
+            "laws.radiation={ law = \"none\" }",
+            "walls=[]",
+        ];
         let (_, series, _) = run("tests/inputs/good/two-in-contact.toml", &set(&words));
         let times = series.column("process_time");
         let kelvin = last(&series);

@@ -110,7 +110,7 @@ fn surroundings(table: &TableReader<'_>, law: Option<RadiationLaw>) -> Option<Op
     if let Some(name) = blind {
         table.fail(
             "surroundings",
-            &format!("does not go with law = \"{name}\", which does not see where the bed ends"),
+            format!("does not go with law = \"{name}\", which does not see where the bed ends"),
             "write \"closed\", or law = \"view-factors\"",
         );
     }
