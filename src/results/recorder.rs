@@ -292,6 +292,8 @@ impl Recorder {
         let species = self.case.gas.properties.species();
         let flows = &mut self.counters.flows;
         flows.add(&moment.ledger.flows, species, span);
+        let patches = moment.mesh.patches();
+        flows.add_patches(patches, moment.patch_flows, species, span);
         for first in warnings::add(&mut self.counters.warnings, moment.findings, time) {
             tracing::warn!("{first}; counted in {SUMMARY}, not told of again");
         }
