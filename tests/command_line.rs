@@ -623,7 +623,7 @@ fn an_adhesive_law_is_refused_in_the_pairing_whose_particles_have_none() {
     let native = calcine(folder.path(), &words);
     assert!(native.status.success(), "{native:?}");
     let words = [&words[..], &["--particles", "liggghts"]].concat();
-    let text = refused(folder.path(), 2, &words);
+    let text = refused(folder.path(), 4, &words);
     assert!(text.contains("no cohesion law \"jkr\""), "{text}");
     assert!(text.contains("use native particles"), "{text}");
 }

@@ -3,6 +3,7 @@
 mod means;
 mod opened;
 mod summarise;
+mod written;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
