@@ -607,3 +607,23 @@ fn a_particle_that_no_tube_has_room_for_is_refused_with_what_to_do() {
         "{text}"
     );
 }
+
+#[test]
+fn an_adhesive_law_is_refused_in_the_pairing_whose_particles_have_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = shipped("settling-sphere");
+    let words = [
+        "check",
+        case.to_str().unwrap(),
+        "--set",
+        "motion.cohesion={ law = \"jkr\" }",
+        "--set",
+        "contacts[0].work_of_adhesion=50 mJ/m^2",
+    ];
+    let native = calcine(folder.path(), &words);
+    assert!(native.status.success(), "{native:?}");
+    let words = [&words[..], &["--particles", "liggghts"]].concat();
+    let text = refused(folder.path(), 4, &words);
+    assert!(text.contains("no cohesion law \"jkr\""), "{text}");
+    assert!(text.contains("use native particles"), "{text}");
+}

@@ -60,6 +60,7 @@ fn contacts(law: ContactLaw) -> Contacts {
         rolling_friction: 0.1,
         rolling_damping: 0.3,
         cohesion_energy: 2e4,
+        work_of_adhesion: 0.0,
     };
     let (own, mixed) = (pair(0.6, 0.4), pair(0.5, 0.3));
     Contacts {

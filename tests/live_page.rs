@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use calcine::results::Summary;
+use calcine::results::flows::{FlowAmount, PatchAmounts};
 use calcine::results::read::Series;
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -192,6 +193,22 @@ fn the_flows_of_a_run_close_as_its_ledger_does() {
             (net + line.drift).abs() < 1e-12 * line.throughput,
             "{net} {line:?}"
         );
+    }
+    // What passed the patches is what passed the boundary.
+    let boundary = [flows.mass_kg["boundary"], flows.energy_j["boundary"]];
+    let sum = |of: fn(&PatchAmounts) -> FlowAmount| {
+        let amounts = flows.patches.iter().map(of);
+        amounts.fold([0.0; 2], |[net, all], one| {
+            [
+                net + one.inward - one.outward,
+                all + one.inward + one.outward,
+            ]
+        })
+    };
+    let patches = [sum(|one| one.mass_kg), sum(|one| one.heat_j)];
+    for (way, [net, all]) in boundary.iter().zip(patches) {
+        let off = way.inward - way.outward - net;
+        assert!(all > 0.0 && off.abs() < 1e-12 * all, "{way:?} {net} {all}");
     }
     // Ten spheres of 10 mm, 2500 kg/m3 and 840 J/kg/K took what their mean temperature tells.
     let series = Series::read(&out).unwrap();

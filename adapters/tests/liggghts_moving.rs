@@ -7,7 +7,8 @@ use std::path::Path;
 
 use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::motion::{
-    ContactForce, Contacts, NewParticle, ParticleChanges, Resized, Wall, WallMotion, WallShape,
+    Cohesion, ContactForce, Contacts, NewParticle, ParticleChanges, Resized, Wall, WallMotion,
+    WallShape,
 };
 use calcine_coupler::named_columns::NamedColumns;
 use calcine_coupler::part::{DRAG_COEFFICIENT, GAS_VELOCITY, Part, ParticlePush, Particles};
@@ -419,6 +420,9 @@ fn what_it_does_not_have_is_refused_before_it_starts() {
     let mut forgetful = contacts(Vec3::zeros());
     forgetful.law.force = ContactForce::SpringSliderDashpot;
     assert!(refused(&mut bench, forgetful).contains("spring-slider-dashpot"));
+    let mut adhesive = contacts(Vec3::zeros());
+    adhesive.law.cohesion = Cohesion::Jkr;
+    assert!(refused(&mut bench, adhesive).contains("no cohesion law \"jkr\""));
     let mut soft = contacts(Vec3::zeros());
     soft.pairs[0].restitution = 0.01;
     assert!(refused(&mut bench, soft).contains("0.01"));

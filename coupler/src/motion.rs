@@ -103,6 +103,8 @@ pub struct Pair {
     pub rolling_damping: f64,
     /// Cohesion energy density in J/m³ (SJKR law only).
     pub cohesion_energy: f64,
+    /// Work of adhesion in J/m² (JKR law only).
+    pub work_of_adhesion: f64,
 }
 
 /// Law of the force between two particles, or a particle and a wall, in contact.
@@ -144,6 +146,18 @@ pub enum ContactForce {
     },
 }
 
+impl ContactForce {
+    /// True where its elastic force is that of Hertz' law.
+    pub fn is_hertz(&self) -> bool {
+        match self {
+            Self::HertzMindlin | Self::SpringSliderDashpot | Self::OpenfoamSpringSliderDashpot => {
+                true
+            }
+            Self::Linear { .. } | Self::LinearSprings { .. } => false,
+        }
+    }
+}
+
 /// Resistance to rolling.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rolling {
@@ -164,6 +178,8 @@ pub enum Cohesion {
     None,
     /// Simplified Johnson, Kendall, Roberts: cohesion energy density times the contact area.
     Sjkr,
+    /// Johnson, Kendall, Roberts: adhesive elastic spheres with a pull-off force, torn off at a distance (docs/theory.md, COR-46).
+    Jkr,
 }
 
 /// The forces of contacts that a case may choose; the solvers of particles say which of them they have.
@@ -291,6 +307,14 @@ pub static COHESION_LAWS: &[&LawEntry<Cohesion>] = &[
         parameters: &[],
         tables: &[],
         make: |_| Box::new(Cohesion::Sjkr),
+    },
+    &LawEntry {
+        name: "jkr",
+        summary: "Johnson, Kendall and Roberts: adhesive elastic spheres with a pull-off force and a distance at which contacts tear off.",
+        source: "Johnson, Kendall and Roberts, Proc. R. Soc. Lond. A 324 (1971) 301, doi 10.1098/rspa.1971.0141; Parteli et al., Sci. Rep. 4 (2014) 6227, doi 10.1038/srep06227",
+        parameters: &[],
+        tables: &[],
+        make: |_| Box::new(Cohesion::Jkr),
     },
 ];
 

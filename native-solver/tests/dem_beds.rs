@@ -182,6 +182,11 @@ fn the_energy_budget_closes_with_the_order_of_the_step() {
 
 /// A few thousand spheres of all sizes in a turning drum, with every law's memory.
 pub fn drum(rolling: Rolling, force: ContactForce) -> Bed {
+    drum_with(rolling, force, |_| ())
+}
+
+/// The same with contacts that are changed.
+pub fn drum_with(rolling: Rolling, force: ContactForce, change: impl Fn(&mut Contacts)) -> Bed {
     let mut contacts = cylinder(2e-5, 0.02);
     contacts.law.rolling = rolling;
     contacts.law.force = force;
@@ -194,6 +199,7 @@ pub fn drum(rolling: Rolling, force: ContactForce) -> Bed {
         point: Vec3::zeros(),
         angular_velocity: Vec3::z() * 20.0,
     };
+    change(&mut contacts);
     let mut spheres = loose([10, 10, 26], 2.6e-3, 1.1e-3, 0.5);
     let mut next = scatter(5);
     for sphere in &mut spheres {

@@ -1,7 +1,9 @@
 //! Checkpoints of moving spheres: to the bit, writing one changes nothing, and a bed goes on from one as from itself.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use calcine_coupler::motion::{ContactForce, ParticleChanges, Rolling, WallMotion, WallShape};
+use calcine_coupler::motion::{
+    ContactForce, Contacts, ParticleChanges, Rolling, WallMotion, WallShape,
+};
 use calcine_coupler::part::Part;
 use calcine_coupler::physics::Vec3;
 
@@ -9,7 +11,7 @@ use crate::dem_beds::drum;
 use crate::grains::*;
 
 /// A bed that goes on after `before` steps, one that writes a checkpoint there, and one that goes on from it.
-fn goes_on_alike(make: impl Fn() -> Bed, before: u64) {
+pub fn goes_on_alike(make: impl Fn() -> Bed, before: u64) {
     let folder = tempfile::tempdir().unwrap();
     let (mut alone, mut through, mut resumed) = (make(), make(), make());
     if before > 0 {
@@ -75,6 +77,11 @@ fn faces(low: Vec3, high: Vec3, n: usize) -> WallShape {
 
 /// Rough spheres in a turning box of triangles, in whose edges and corners they touch several, one of them held.
 fn box_of_triangles() -> Bed {
+    box_with(|_| ())
+}
+
+/// The same with contacts that are changed.
+pub fn box_with(change: impl Fn(&mut Contacts)) -> Bed {
     let mut contacts = contacts(1e-5);
     contacts.gravity = Vec3::z() * -9.81;
     contacts.material_of = vec![0; 2];
@@ -85,6 +92,7 @@ fn box_of_triangles() -> Bed {
         point: Vec3::zeros(),
         angular_velocity: Vec3::y() * 5.0,
     };
+    change(&mut contacts);
     let mut spheres = loose([6, 6, 8], 2.5e-3, 1e-3, 0.5);
     for sphere in &mut spheres {
         sphere.position -= Vec3::new(7.5e-3, 7.5e-3, 0.0);

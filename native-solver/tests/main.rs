@@ -7,6 +7,7 @@ mod burner;
 mod column;
 mod common;
 mod conformance;
+mod dem_adhesion;
 mod dem_beds;
 mod dem_chute;
 mod dem_drag;

@@ -236,6 +236,7 @@ fn pairs(case: &Case) -> Vec<Pair> {
             rolling_friction: contact.rolling_friction.unwrap_or(0.0),
             rolling_damping: contact.rolling_damping.unwrap_or(0.0),
             cohesion_energy: contact.cohesion_energy.unwrap_or(0.0),
+            work_of_adhesion: contact.work_of_adhesion.unwrap_or(0.0),
         };
         pairs[a * count + b] = pair;
         pairs[b * count + a] = pair;

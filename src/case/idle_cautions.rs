@@ -6,6 +6,7 @@ use calcine_coupler::mesh::surface::triangles;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{Cohesion, Motion, Rolling, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::law::NONE;
 use calcine_coupler::setup::{GasPatch, ParticleSetup};
 
 use super::in_wall;
@@ -59,25 +60,35 @@ fn unused_contacts(case: &Case) -> Vec<String> {
         return Vec::new();
     };
     let no_rolling = motion.parcels.is_some() || motion.law.rolling == Rolling::None;
-    let no_cohesion = motion.parcels.is_some() || motion.law.cohesion == Cohesion::None;
-    let idle = |key: &str, law: &str, stated: fn(&ContactSpec) -> Option<f64>| {
+    let cohesive = |law: Cohesion| motion.parcels.is_none() && motion.law.cohesion == law;
+    let of_cohesion = match motion.law.cohesion {
+        Cohesion::None => NONE,
+        Cohesion::Sjkr => "sjkr",
+        Cohesion::Jkr => "jkr",
+    };
+    let idle = |key: &str, [law, chosen]: [&str; 2], stated: fn(&ContactSpec) -> Option<f64>| {
         let mut contacts = case.contacts.iter().enumerate();
         let (index, _) = contacts.find(|(_, one)| stated(one).is_some_and(|value| value > 0.0))?;
         Some(match motion.parcels {
             Some(_) => format!("`contacts[{index}].{key}` has no effect: parcels have no contacts"),
             None => {
                 format!(
-                    "`contacts[{index}].{key}` has no effect: the law of `motion.{law}` is \"none\""
+                    "`contacts[{index}].{key}` has no effect: the law of `motion.{law}` is \"{chosen}\""
                 )
             }
         })
     };
-    let rolling = idle("rolling_friction", "rolling", |one| one.rolling_friction);
-    let cohesion = idle("cohesion_energy", "cohesion", |one| one.cohesion_energy);
+    let rolling = idle("rolling_friction", ["rolling", NONE], |one| {
+        one.rolling_friction
+    });
+    let law = ["cohesion", of_cohesion];
+    let cohesion = idle("cohesion_energy", law, |one| one.cohesion_energy);
+    let adhesion = idle("work_of_adhesion", law, |one| one.work_of_adhesion);
     let rolling = rolling.filter(|_| no_rolling);
     rolling
         .into_iter()
-        .chain(cohesion.filter(|_| no_cohesion))
+        .chain(cohesion.filter(|_| !cohesive(Cohesion::Sjkr)))
+        .chain(adhesion.filter(|_| !cohesive(Cohesion::Jkr)))
         .collect()
 }
 

@@ -177,6 +177,8 @@ pub struct ContactSpec {
     pub rolling_damping: Option<f64>,
     /// Cohesion energy density in J/m³.
     pub cohesion_energy: Option<f64>,
+    /// Work of adhesion in J/m².
+    pub work_of_adhesion: Option<f64>,
 }
 
 /// `[motion]`: how particles that are free move.

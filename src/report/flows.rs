@@ -9,7 +9,7 @@ use super::colour;
 use super::number::{figure, span};
 use super::page::{escape, table};
 use crate::results::Summary;
-use crate::results::flows::FlowAmount;
+use crate::results::flows::{FlowAmount, FlowSummary, PatchAmounts};
 
 /// Ways of energy and of mass by their names in the summary, and in words.
 const ENERGY: [(&str, &str); 9] = [
@@ -92,10 +92,11 @@ pub(super) fn render(summary: &Summary) -> String {
         return String::new();
     }
     format!(
-        "{}{}{}",
+        "{}{}{}{}",
         sankey(&energy),
         tabled("heat", "W", &energy),
-        tabled("mass", "g/s", &mass)
+        tabled("mass", "g/s", &mass),
+        by_patch(flows)
     ) + &format!(
         "<p class=\"note\">Means over {} of process time. Enthalpy of gas counts from 298.15 K, so that only \
          differences of what the gas brings and takes are heat; energy of particles counts from the elements.</p>",
@@ -120,15 +121,71 @@ fn ways<'a>(names: &[(&str, &'a str)], mean: impl Fn(&str) -> [f64; 2]) -> Vec<W
     ways.into_iter().filter(told).collect()
 }
 
+/// A figure, or a dash for nothing.
+fn number(value: f64) -> String {
+    if value == 0.0 {
+        "–".into()
+    } else {
+        figure(value, 4)
+    }
+}
+
+/// What passed each patch: gas, each of its species, heat; without what is negligible beside the most of its kind.
+fn by_patch(flows: &FlowSummary) -> String {
+    let least = |of: fn(&PatchAmounts) -> FlowAmount| {
+        let amounts = flows.patches.iter().map(of);
+        let largest = amounts.map(|one| one.inward.max(one.outward));
+        NEGLIGIBLE * largest.fold(0.0, f64::max)
+    };
+    let (mass, heat) = (least(|one| one.mass_kg), least(|one| one.heat_j));
+    let shown = |amount: &FlowAmount, least: f64, unit: f64| {
+        let told = |sum: f64| if sum > least { sum } else { 0.0 };
+        [amount.inward, amount.outward].map(|sum| unit * told(sum) / flows.over_s)
+    };
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for one in &flows.patches {
+        let (gas, warmth) = (
+            shown(&one.mass_kg, mass, 1e3),
+            shown(&one.heat_j, heat, 1.0),
+        );
+        if [gas, warmth].concat().iter().all(|value| *value == 0.0) {
+            continue;
+        }
+        let mut row = vec![format!("<code>{}</code>", escape(&one.patch))];
+        row.extend([gas, warmth].concat().into_iter().map(number));
+        rows.push(row);
+        for (name, amount) in &one.species_kg {
+            let [inward, outward] = shown(amount, mass, 1e3);
+            if inward + outward > 0.0 {
+                let words = format!("of it {}", escape(name));
+                rows.push(vec![
+                    words,
+                    number(inward),
+                    number(outward),
+                    String::new(),
+                    String::new(),
+                ]);
+            }
+        }
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    let head = [
+        "patch",
+        "#gas in, g/s",
+        "#gas out, g/s",
+        "#heat in, W",
+        "#heat out, W",
+    ];
+    format!(
+        "<h3>By patch</h3>{}<p class=\"note\">Net of each window; heat flows with the gas and by conduction.</p>",
+        table(&head, &rows)
+    )
+}
+
 fn tabled(what: &str, unit: &str, ways: &[Way<'_>]) -> String {
     let [inward, outward] = [format!("#in, {unit}"), format!("#out, {unit}")];
-    let number = |value: f64| {
-        if value == 0.0 {
-            "–".into()
-        } else {
-            figure(value, 4)
-        }
-    };
     let rows: Vec<Vec<String>> = ways
         .iter()
         .map(|way| vec![escape(way.words), number(way.inward), number(way.outward)])
@@ -258,6 +315,49 @@ mod tests {
         );
         assert!(svg.contains(">100 W<") && svg.contains(">75 W<") && svg.contains(">25 W<"));
         assert_eq!(sankey(&[way("bodies", 0.0, 0.0)]), "");
+    }
+
+    #[test]
+    fn patches_are_told_with_means_and_without_those_that_nothing_passed() {
+        let amount = |inward, outward| FlowAmount { inward, outward };
+        let patch = |name: &str, mass_kg, heat_j, species: &[(&str, FlowAmount)]| PatchAmounts {
+            patch: name.into(),
+            mass_kg,
+            heat_j,
+            species_kg: species
+                .iter()
+                .map(|(name, of)| ((*name).into(), *of))
+                .collect(),
+        };
+        let none = FlowAmount::default();
+        let flows = FlowSummary {
+            over_s: 2.0,
+            patches: vec![
+                patch(
+                    "inlet",
+                    amount(0.5, 0.0),
+                    amount(0.0, 30.0),
+                    &[("N2", amount(0.4, 0.0)), ("O2", none)],
+                ),
+                patch("wall", none, amount(7.0, 0.0), &[]),
+                patch("side", amount(1e-12, 0.0), none, &[]),
+            ],
+            ..FlowSummary::default()
+        };
+        let html = by_patch(&flows);
+        for there in [
+            "<code>inlet</code>",
+            ">250<",
+            ">15<",
+            "of it N2",
+            ">200<",
+            "<code>wall</code>",
+            ">3.5<",
+        ] {
+            assert!(html.contains(there), "{there}: {html}");
+        }
+        assert!(!html.contains("side") && !html.contains("O2"), "{html}");
+        assert_eq!(by_patch(&FlowSummary::default()), "");
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use calcine_coupler::flows::{TwoWayFlow, WindowFlows};
+use calcine_coupler::mesh::Patch;
+use calcine_coupler::part::PatchFlow;
 use serde::{Deserialize, Serialize};
 
 /// What went one way and the other over the run, both positive.
@@ -21,6 +23,19 @@ impl FlowAmount {
     }
 }
 
+/// What passed a patch of the gas mesh: where a window brings and takes, what it brings beyond that.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PatchAmounts {
+    /// Name of the patch.
+    pub patch: String,
+    /// Gas mass in kg.
+    pub mass_kg: FlowAmount,
+    /// Heat in J: sensible enthalpy, zero at 298.15 K, that flows with the gas, and conduction.
+    pub heat_j: FlowAmount,
+    /// Mass in kg of each species of a gas mixture.
+    pub species_kg: BTreeMap<String, FlowAmount>,
+}
+
 /// The amounts of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowSummary {
@@ -33,6 +48,9 @@ pub struct FlowSummary {
     pub energy_j: BTreeMap<String, FlowAmount>,
     /// Mass in kg of each species of a gas mixture through the boundary.
     pub species_kg: BTreeMap<String, FlowAmount>,
+    /// What passed each patch, in the order of the mesh; empty of a gas that does not tell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub patches: Vec<PatchAmounts>,
 }
 
 impl FlowSummary {
@@ -49,6 +67,31 @@ impl FlowSummary {
         }
         for (name, flow) in species.iter().zip(&flows.species) {
             self.species_kg.entry(name.clone()).or_default().add(*flow);
+        }
+    }
+
+    /// Adds what passed the patches of the mesh in a window of so many s of process time.
+    pub(super) fn add_patches(
+        &mut self,
+        patches: &[Patch],
+        flows: &[PatchFlow],
+        species: &[String],
+        span: f64,
+    ) {
+        if self.patches.is_empty() {
+            let named = patches.iter().zip(flows).map(|(patch, _)| PatchAmounts {
+                patch: patch.name.clone(),
+                ..PatchAmounts::default()
+            });
+            self.patches.extend(named);
+        }
+        for (to, flow) in self.patches.iter_mut().zip(flows) {
+            to.mass_kg.add(TwoWayFlow::of_net(span * flow.mass));
+            to.heat_j.add(TwoWayFlow::of_net(span * flow.heat));
+            for (name, flow) in species.iter().zip(&flow.species) {
+                let amount = to.species_kg.entry(name.clone()).or_default();
+                amount.add(TwoWayFlow::of_net(span * flow));
+            }
         }
     }
 }

@@ -1,34 +1,30 @@
 //! The recorder: the observer that writes the results of a run.
 
+mod means;
+mod opened;
 mod summarise;
+mod written;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::findings::Finding;
 use calcine_coupler::observer::{CommittedState, CutNotice, Observer, ObserverError};
-use calcine_coupler::time::{Ticks, Window};
 
 use super::means::FieldMeans;
-use super::moment::SnapshotMoment;
 use super::open::{feeds_wait, open_balance};
 use super::passages;
-use super::probe::{self, Site};
+use super::probe;
 use super::quantities::{self, Captured, RunSoFar};
-use super::rebuild::{self, rebuild};
 use super::resume::{self, Counters, Restored};
-use super::series::{self, Row, TRACKED_PARTICLES, Table};
+use super::series::{self, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{ProcessorTimes, Provenance, RunFailure, Summary, Verdict, WallTimes};
-use super::vtk::{self, Cells};
-use super::{
-    CASE, ResultsError, SERIES, STORE, SUMMARY, files, inertial_number, snapshot, voids, warnings,
-};
+use super::vtk::Cells;
+use super::{CASE, ResultsError, STORE, SUMMARY, files, voids, warnings};
 use crate::case::model::Case;
-
-/// So many rows are gathered before they go to the HDF5 file.
-const BATCH: usize = 256;
+use opened::Open;
 
 /// What the summary says of a run beside its case.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,16 +37,6 @@ pub struct RunInfo {
     pub transport: String,
     /// The run that this one continues from; where it resumes, what it began with counts.
     pub from: Option<Provenance>,
-}
-
-/// What exists once the first moment is known.
-struct Open {
-    table: Table,
-    sites: Vec<Site>,
-    cells: Cells,
-    /// Rows not yet in the HDF5 file.
-    pending: Vec<Row>,
-    store: Store,
 }
 
 /// Writes the results of a run.
@@ -196,90 +182,6 @@ impl Recorder {
         self.summarise(moment, Verdict::Running)
     }
 
-    /// `results.h5` of the run that goes on: as it is where it was closed with the rows and snapshots of the checkpoint, else made anew.
-    fn store(
-        &self,
-        moment: &CommittedState<'_>,
-        columns: &[series::Column],
-        sites: &[Site],
-    ) -> Result<Store, ResultsError> {
-        let counters = &self.counters;
-        let (rows, snapshots) = (counters.rows, &counters.snapshots);
-        if self.store_is_closed {
-            let path = self.directory.join(STORE);
-            if let Ok(store) = Store::resume(&path, columns, rows, snapshots.len()) {
-                return Ok(store);
-            }
-        }
-        tracing::info!(
-            "{STORE} is made anew from {SERIES} and {} snapshots",
-            snapshots.len()
-        );
-        let output = &self.case.output;
-        let inside = snapshot::inside(output, moment);
-        let mut store = rebuild(
-            &self.directory,
-            &rebuild::Source {
-                case: &self.case,
-                mesh: moment.mesh,
-                columns,
-                tracked: &counters.tracked,
-                sites,
-                rows,
-                snapshots,
-                gas: &snapshot::gas_fields(&output.gas, self.case.gas.properties.species(), moment),
-                particles: &snapshot::particle_fields(output, &inside, moment),
-            },
-        )?;
-        let over = |means: &&FieldMeans| means.is_over(moment.clocks.process);
-        if let Some(means) = self.means.as_ref().filter(over) {
-            means.with_fields(moment.mesh, |fields| store.means(means.interval(), fields))?;
-        }
-        Ok(store)
-    }
-
-    /// Begins means over time, or takes them up again.
-    fn begin_means(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
-        let Some(spec) = &self.case.output.means else {
-            return Ok(());
-        };
-        let species = self.case.gas.properties.species();
-        let mut means = FieldMeans::new(spec, species, moment);
-        if let Some(checkpoint) = &self.resumed_from {
-            means.restore(checkpoint)?;
-        }
-        if !means.is_over(moment.clocks.process) {
-            // Those of a run that had come further, or that begins again.
-            resume::remove(&self.directory.join(files::MEANS))?;
-        }
-        self.means = Some(means);
-        Ok(())
-    }
-
-    /// Adds a window to the means over time; when their interval is over, they are written.
-    fn average(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
-        let Some(means) = &mut self.means else {
-            return Ok(());
-        };
-        let Some(window) = moment.window else {
-            return Ok(());
-        };
-        means.add(self.case.gas.properties.species(), moment);
-        let was_over = means.is_over(window.start.process);
-        if was_over || !means.is_over(moment.clocks.process) {
-            return Ok(());
-        }
-        let (Some(means), Some(open)) = (&self.means, &mut self.open) else {
-            return Ok(());
-        };
-        let path = self.directory.join(files::MEANS);
-        let interval = means.interval();
-        means.with_fields(moment.mesh, |fields| {
-            vtk::write_gas(&path, moment.mesh, &open.cells, interval[1], fields)?;
-            open.store.means(interval, fields)
-        })
-    }
-
     fn advance(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         self.count(moment);
         self.average(moment)?;
@@ -391,6 +293,8 @@ impl Recorder {
         let species = self.case.gas.properties.species();
         let flows = &mut self.counters.flows;
         flows.add(&moment.ledger.flows, species, span);
+        let patches = moment.mesh.patches();
+        flows.add_patches(patches, moment.patch_flows, species, span);
         for first in warnings::add(&mut self.counters.warnings, moment.findings, time) {
             tracing::warn!("{first}; counted in {SUMMARY}, not told of again");
         }
@@ -413,112 +317,6 @@ impl Recorder {
         sums.largest_residual = sums.largest_residual.max(window.residual);
         sums.largest_volume_residual = sums.largest_volume_residual.max(window.volume_residual);
     }
-
-    fn row(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
-        let acceleration = match moment.window {
-            Some(window) => window.acceleration(),
-            None => self.case.time.acceleration.at(moment.clocks.process).0,
-        };
-        let tracked = &self.counters.tracked;
-        let row = series::row(moment, acceleration, tracked, self.so_far());
-        let every = self
-            .case
-            .output
-            .series_every
-            .unwrap_or(self.case.output.every);
-        let moves = |window: &Window| !series::held(&self.case, window);
-        if moment.window.is_some_and(moves) && series::accelerated(&self.case) {
-            let number = inertial_number::of_bed(moment, self.case.gas.gravity);
-            self.counters.pace.add(number);
-        }
-        let now = moment.clocks.process;
-        self.counters.last_row = Some(now.count());
-        self.counters.next_row = following(now, every);
-        self.counters.rows += 1;
-        let Some(open) = &mut self.open else {
-            return Ok(());
-        };
-        open.table.append(&row)?;
-        open.keep(row)
-    }
-
-    fn snapshot(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
-        let gas = snapshot::gas(
-            &self.case.output,
-            self.case.gas.properties.species(),
-            moment,
-        )?;
-        let inside = snapshot::inside(&self.case.output, moment);
-        let particles = snapshot::particles(&self.case.output, &inside, moment)?;
-        let number = self.counters.snapshots.len();
-        let now = moment.clocks.process;
-        let Some(open) = &mut self.open else {
-            return Ok(());
-        };
-        let path = self.directory.join(files::gas_file(number));
-        vtk::write_gas(&path, moment.mesh, &open.cells, now.seconds(), &gas)?;
-        let path = self.directory.join(files::particle_file(number));
-        vtk::write_particles(&path, moment.particles.position, now.seconds(), &particles)?;
-        let bed = moment.particles;
-        let samples = probe::samples(&open.sites, &gas, &particles, bed.position, bed.radius);
-        if !samples.is_empty() {
-            let path = self.directory.join(files::probe_file(number));
-            probe::write(&path, &samples)?;
-        }
-        let at = SnapshotMoment::of(moment);
-        open.store
-            .snapshot(number, &at, bed.position, &gas, &particles, &samples)?;
-        self.counters.snapshots.push(at);
-        self.counters.last_snapshot = Some(now.count());
-        self.counters.next_snapshot = following(now, self.case.output.every);
-        self.collect()?;
-        self.flush()
-    }
-
-    /// Replaces the two `.pvd` files.
-    fn collect(&self) -> Result<(), ResultsError> {
-        let entries = |file: fn(usize) -> String| -> Vec<_> {
-            let times = self.counters.snapshots.iter().enumerate();
-            times
-                .map(|(number, at)| (at.process_time, file(number)))
-                .collect()
-        };
-        let gas = self.directory.join(files::GAS);
-        vtk::write_collection(&gas, &entries(files::gas_file))?;
-        let particles = self.directory.join(files::PARTICLES);
-        vtk::write_collection(&particles, &entries(files::particle_file))?;
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<(), ResultsError> {
-        match &mut self.open {
-            Some(open) => open.flush(),
-            None => Ok(()),
-        }
-    }
-}
-
-impl Open {
-    fn keep(&mut self, row: Row) -> Result<(), ResultsError> {
-        self.pending.push(row);
-        if self.pending.len() >= BATCH {
-            self.flush()?;
-        }
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<(), ResultsError> {
-        self.store.append(&self.pending)?;
-        self.pending.clear();
-        self.store.flush()?;
-        self.table.flush()
-    }
-}
-
-/// The first multiple of `every` after a time, in ps.
-fn following(now: Ticks, every: Ticks) -> i64 {
-    let every = every.count().max(1);
-    (now.count() / every + 1).saturating_mul(every)
 }
 
 /// Refuses a directory that holds the results of a run.

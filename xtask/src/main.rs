@@ -3,6 +3,7 @@
 
 mod adapters;
 mod bench;
+mod gallery;
 mod gas_error;
 mod headers;
 mod json;
@@ -37,6 +38,10 @@ usage: cargo xtask TASK
                           are compiled against to DIR/include, DIR/lib, DIR/share/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
   wheel                   build the Python package's wheel into target/wheels
+  gallery [CASE …]        run the shipped cases, or those named, and write docs/gallery.md with a
+                          picture of each, drawn by Chromium
+        [--longest S]     leave out runs of more than S seconds (default: 60)
+        [--no-build]      with the program that was built last
   bench …                 run the benchmarks and print one table; further arguments go to
                           `cargo bench`
         [--native]        without OpenFOAM, LIGGGHTS and MPI
@@ -101,6 +106,7 @@ enum Task {
         words: Vec<OsString>,
     },
     Wheel,
+    Gallery(gallery::GalleryChoice),
     Bench(bench::Choice),
     GasError(gas_error::ErrorChoice),
     PythonOverhead(Vec<OsString>),
@@ -130,6 +136,7 @@ fn read(words: &[OsString]) -> Option<Task> {
             })
         }
         "wheel" if rest.is_empty() => Some(Task::Wheel),
+        "gallery" => gallery::GalleryChoice::read(rest).map(Task::Gallery),
         "bench" if rest.first().is_some_and(|word| word == "gas-error") => {
             let words = rest[1..].iter().map(|word| word.to_str());
             gas_error::ErrorChoice::read(words).map(Task::GasError)
@@ -226,6 +233,7 @@ fn perform(task: Task) -> TaskResult<()> {
         Task::Calcine(words) => tasks::run(&workspace, &words),
         Task::Test { native, words } => tasks::test(&workspace, native, &words),
         Task::Wheel => tasks::wheel(&workspace),
+        Task::Gallery(choice) => gallery::run(&workspace, &choice),
         Task::Bench(choice) => bench::run(&workspace, &choice),
         Task::GasError(choice) => gas_error::run(&workspace, &choice),
         Task::PythonOverhead(words) => python::overhead(&workspace, &words),

@@ -80,18 +80,9 @@ pub fn overhead(workspace: &Workspace, words: &[OsString]) -> TaskResult<()> {
     let environment = PythonEnvironment::prepare(workspace)?;
     let log = new_log(&workspace.logs, "python-overhead")?;
     step("build the command and the package", || {
-        quietly(
-            workspace
-                .cargo("build")
-                .args(["--release", "-p", "calcine"]),
-            &log,
-        )?;
-        let manifest = workspace.root.join("python/Cargo.toml");
-        let mut package = workspace.cargo("build");
-        quietly(
-            package.args(["--release", "--manifest-path"]).arg(manifest),
-            &log,
-        )
+        // In one call, so that both share their libraries: apart they have other features, and each is built for itself.
+        let packages = ["--release", "-p", "calcine", "-p", "calcine-python"];
+        quietly(workspace.cargo("build").args(packages), &log)
     })?;
     let built = workspace.target.join(CargoProfile::Release.folder());
     let site = environment.site(workspace, &built, "bench-site")?;

@@ -151,7 +151,7 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> TaskResult
                 &share.join("calcine").join(folder),
             )?;
         }
-        for file in ["README.md", "CHANGELOG.md"] {
+        for file in ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE"] {
             copy(
                 &workspace.root.join(file),
                 &share.join("calcine").join(file),

@@ -51,6 +51,13 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
         }
         ContactForce::Linear { .. } | ContactForce::HertzMindlin => {}
     }
+    if contacts.law.cohesion == Cohesion::Jkr {
+        return Some(
+            "it has no cohesion law \"jkr\", whose contacts hold to a pull-off force and tear off at a distance; use native particles, or write \
+             motion.cohesion = { law = \"sjkr\" } with `cohesion_energy` of contacts"
+                .into(),
+        );
+    }
     let unknown = contacts
         .walls
         .iter()

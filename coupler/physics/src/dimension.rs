@@ -55,7 +55,7 @@ dimensions! {
     HEAT_TRANSFER = [0, 1, -3, -1, 0], "a heat transfer coefficient", "W/m^2/K", "10 W/m^2/K";
     ANGULAR_VELOCITY = [0, 0, -1, 0, 0], "an angular velocity", "rad/s", "3 rad/s";
     FORCE = [1, 1, -2, 0, 0], "a force", "N", "50 mN";
-    STIFFNESS = [0, 1, -2, 0, 0], "a stiffness", "N/m", "1 kN/m";
+    STIFFNESS = [0, 1, -2, 0, 0], "a stiffness or an energy per area", "N/m", "1 kN/m";
     ENERGY = [2, 1, -2, 0, 0], "an energy", "J", "2 mJ";
     POWER = [2, 1, -3, 0, 0], "a power", "W", "10 W";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "kg/mol", "28.96 g/mol";
@@ -68,6 +68,9 @@ dimensions! {
 impl Dimension {
     /// Of permeabilities, which are areas.
     pub const PERMEABILITY: Self = Self::AREA;
+
+    /// Of energies per area.
+    pub const SURFACE_ENERGY: Self = Self::STIFFNESS;
 }
 
 impl fmt::Display for Dimension {

@@ -1,7 +1,7 @@
 //! Setups that the native particles cannot take.
 
 use calcine_coupler::motion::{
-    ContactForce, Contacts, Motion, ParticleChanges, Resized, Wall, WallShape,
+    Cohesion, ContactForce, Contacts, Motion, ParticleChanges, Resized, Wall, WallShape,
 };
 use calcine_coupler::parcels::ParcelMotion;
 use calcine_coupler::periodic_motion;
@@ -154,6 +154,7 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
         positive("the stiffness", stiffness, "N/m", motion)?;
         positive("the ratio of stiffnesses", tangential_ratio, "", motion)?;
     }
+    let adhesive = contacts.law.cohesion == Cohesion::Jkr && !contacts.law.force.is_hertz();
     let materials = contacts.materials.len();
     for (k, material) in contacts.materials.iter().enumerate() {
         let place = || format!("material {k}");
@@ -192,8 +193,15 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
             ("the rolling friction", pair.rolling_friction, ""),
             ("the rolling damping", pair.rolling_damping, ""),
             ("the cohesion energy density", pair.cohesion_energy, "J/m^3"),
+            ("the work of adhesion", pair.work_of_adhesion, "J/m^2"),
         ] {
             within(field, value, unit, place, "0 or more", |value| value >= 0.0)?;
+        }
+        if adhesive {
+            let work = pair.work_of_adhesion;
+            let rule = "0 with a linear contact law";
+            let field = "the work of adhesion";
+            within(field, work, "J/m^2", place, rule, |value| value == 0.0)?;
         }
         if *pair != contacts.pairs[k % materials * materials + k / materials] {
             return Err(NativeError::Value {

@@ -10,4 +10,5 @@ pub(super) const CONTACTS: &[Key] = &[
     key("rolling_friction", Number(D::NONE, NotNegative), Without("not known"), "Coefficient of rolling friction, zero or above.", "0.05"),
     key("rolling_damping", Number(D::NONE, NotNegative), Without("not known"), "Damping of rolling as a share of the critical one, zero or above; for the rolling law `elastic-plastic`.", "0.3"),
     key("cohesion_energy", Number(D::PRESSURE, NotNegative), Without("not known"), "Cohesion energy density, zero or above; for the cohesion law `sjkr`.", "\"2 kJ/m^3\""),
+    key("work_of_adhesion", Number(D::SURFACE_ENERGY, NotNegative), Without("not known"), "Work of adhesion w, zero or above, for the cohesion law `jkr`: of equal surfaces twice their surface energy.", "\"50 mJ/m^2\""),
 ];

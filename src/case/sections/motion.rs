@@ -42,15 +42,22 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
     let rolling = section.plain_law("rolling", &known.rolling);
     let cohesion = section.plain_law("cohesion", &known.cohesion);
     section.finish();
+    let (force, cohesion) = (*force?.make(), *cohesion?.make());
+    if cohesion == Cohesion::Jkr && !force.is_hertz() {
+        let rule = "is \"jkr\", which adds adhesion to elastic spheres of Hertz, but `motion.contact` is linear";
+        let help = "write motion.contact = { law = \"hertz-mindlin\" }";
+        section.fail("cohesion", rule, help);
+        return None;
+    }
     Some(FreeMotion {
         kind: kind?,
         step,
         long_step: long_step?,
         law: ContactLaw {
-            force: *force?.make(),
+            force,
             attractive_damping: attractive?,
             rolling: *rolling?.make(),
-            cohesion: *cohesion?.make(),
+            cohesion,
         },
         parcels: None,
         held,
@@ -192,6 +199,11 @@ pub(super) fn need_properties(root: &TableReader<'_>, meeting: &Meeting<'_>) {
                 "cohesion_energy",
                 contact.cohesion_energy,
                 motion.law.cohesion == Cohesion::Sjkr,
+            ),
+            (
+                "work_of_adhesion",
+                contact.work_of_adhesion,
+                motion.law.cohesion == Cohesion::Jkr,
             ),
         ];
         for (key, value, needed) in wanted {

@@ -176,6 +176,7 @@ pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Ve
             let rolling_friction = number("rolling_friction");
             let rolling_damping = number("rolling_damping");
             let cohesion_energy = number("cohesion_energy");
+            let work_of_adhesion = number("work_of_adhesion");
             table.finish();
             let index = |name: &String| materials.iter().position(|other| other.name == *name);
             let pair: Option<Vec<usize>> = between?.iter().map(index).collect();
@@ -206,6 +207,7 @@ pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Ve
                 rolling_friction,
                 rolling_damping,
                 cohesion_energy,
+                work_of_adhesion,
             })
         })
         .collect()

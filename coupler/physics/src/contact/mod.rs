@@ -6,6 +6,7 @@
 mod cohesion;
 mod friction;
 mod hertz_mindlin;
+mod jkr;
 mod linear;
 mod linear_springs;
 mod rolling;
@@ -15,6 +16,7 @@ pub mod time_step;
 pub use cohesion::{CohesionArea, sjkr};
 pub use friction::{Tangential, friction};
 pub use hertz_mindlin::HertzMindlin;
+pub use jkr::{AdhesiveContact, jkr, tear_off_distance, tear_off_energy};
 pub use linear::Linear;
 pub use linear_springs::LinearSprings;
 pub use rolling::{RollingSpring, constant_torque, elastic_plastic};
@@ -39,11 +41,13 @@ pub struct PairConstants {
     pub rolling_damping: f64,
     /// Cohesion energy density in J/m³.
     pub cohesion_energy: f64,
+    /// Work of adhesion in J/m².
+    pub work_of_adhesion: f64,
 }
 
 impl PairConstants {
     /// Elastic and damping constants of two materials, each given by Young's modulus in Pa and Poisson's
-    /// ratio, and their restitution; friction, rolling friction and cohesion are zero.
+    /// ratio, and their restitution; friction, rolling friction, cohesion and adhesion are zero.
     pub fn new(first: [f64; 2], second: [f64; 2], restitution: f64) -> Self {
         let [young, poisson] = [0, 1].map(|i| [first[i], second[i]]);
         let normal = |i: usize| (1.0 - poisson[i] * poisson[i]) / young[i];
@@ -59,6 +63,7 @@ impl PairConstants {
             rolling_friction: 0.0,
             rolling_damping: 0.0,
             cohesion_energy: 0.0,
+            work_of_adhesion: 0.0,
         }
     }
 }

@@ -4,9 +4,9 @@ use std::hint::black_box;
 use std::ops::Range;
 
 use calcine_coupler::excursion::Excursion;
-use calcine_coupler::motion::Rolling;
+use calcine_coupler::motion::{Cohesion, Rolling};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{CohesionArea, ContactModel, Slip};
+use calcine_coupler::physics::contact::{CohesionArea, ContactModel, Slip, tear_off_energy};
 
 use super::candidates::{CandidatePairs, TouchingPair};
 use super::contact::{SurfaceOverlap, evaluate};
@@ -103,7 +103,7 @@ impl Block {
         // Counting energies, rolling, cohesion and looks without a step go one by one.
         let plain = !BUDGET
             && L::SLIP == Slip::SpringKept
-            && !scene.rules.cohesion
+            && scene.rules.cohesion == Cohesion::None
             && scene.rules.rolling == Rolling::None
             && scene.step > 0.0;
         if plain {
@@ -118,7 +118,7 @@ impl Block {
             });
             return;
         }
-        let found = touching_of(inner, &scene.spheres.place, touching);
+        let found = held_of::<L, BUDGET>(scene, inner, touching, budget);
         pairs::<L, BUDGET>(
             scene,
             inner,
@@ -130,7 +130,7 @@ impl Block {
                 load[j - begin].add(&other);
             },
         );
-        let found = touching_of(cross, &scene.spheres.place, touching);
+        let found = held_of::<L, BUDGET>(scene, cross, touching, budget);
         pairs::<L, BUDGET>(
             scene,
             cross,
@@ -238,6 +238,26 @@ fn touching_of(
     found
 }
 
+/// Lists the candidates that touch, or that adhesion holds, and counts the energy of what tears off.
+fn held_of<L, const BUDGET: bool>(
+    scene: &ForceContext<'_, L>,
+    candidates: &mut CandidatePairs,
+    touching: &mut [TouchingPair],
+    budget: &mut ContactEnergy,
+) -> usize {
+    let spheres = scene.spheres;
+    if scene.rules.cohesion != Cohesion::Jkr {
+        return touching_of(candidates, &spheres.place, touching);
+    }
+    candidates.adhering(&spheres.place, touching, |[i, j]| {
+        if BUDGET {
+            let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
+            let [a, b] = [i, j].map(|index| spheres.place[index].radius);
+            budget.lost_normal += tear_off_energy(pair, a * b / (a + b));
+        }
+    })
+}
+
 #[inline(always)]
 fn pairs<L: ContactModel, const BUDGET: bool>(
     scene: &ForceContext<'_, L>,
@@ -323,7 +343,7 @@ fn meet(
             Rolling::ElasticPlastic => 1.4 / (moment(a, va) + moment(b, vb)),
             _ => 0.0,
         },
-        area: if rules.cohesion {
+        area: if rules.cohesion == Cohesion::Sjkr {
             CohesionArea::of_spheres(a.radius, b.radius, distance)
         } else {
             CohesionArea {

@@ -2,6 +2,8 @@
 
 use calcine_coupler::physics::Vec3;
 
+use super::sphere::SpherePosition;
+
 /// Pairs that may touch, with their memory. Arrays that a run does not need are empty.
 #[derive(Clone, Debug, Default)]
 pub struct CandidatePairs {
@@ -15,6 +17,8 @@ pub struct CandidatePairs {
     pub rolling: Vec<Vec3>,
     /// What the law prepared.
     pub prepared: Vec<f64>,
+    /// Distances of the surfaces in m up to which those that touched hold, of an adhesive law.
+    pub tear_off: Vec<f64>,
 }
 
 impl CandidatePairs {
@@ -25,6 +29,33 @@ impl CandidatePairs {
         self.touched.clear();
         self.rolling.clear();
         self.prepared.clear();
+        self.tear_off.clear();
+    }
+
+    /// Lists the candidates that touch by an adhesive law, which keeps contacts until they tear off, and notes which they are; `torn`
+    /// gets those that did tear off. Returns their number.
+    pub fn adhering(
+        &mut self,
+        place: &[SpherePosition],
+        touching: &mut [TouchingPair],
+        mut torn: impl FnMut([usize; 2]),
+    ) -> usize {
+        let mut found = 0;
+        let pairs = self.pair.iter().zip(&mut self.touched).zip(&self.tear_off);
+        for (k, ((&pair, touched), &tear_off)) in pairs.enumerate() {
+            let pair = pair.map(|index| index as usize);
+            let [a, b] = pair.map(|index| &place[index]);
+            let held = if *touched { tear_off } else { 0.0 };
+            let reach = a.radius + b.radius + held;
+            let touches = (a.centre - b.centre).norm_squared() < reach * reach;
+            touching[found] = TouchingPair::new(k, *touched);
+            found += usize::from(touches);
+            if *touched && !touches {
+                torn(pair);
+            }
+            *touched = touches;
+        }
+        found
     }
 }
 

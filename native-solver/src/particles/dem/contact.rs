@@ -1,10 +1,10 @@
 //! The force of one contact, of two spheres or of a sphere and a wall.
 
-use calcine_coupler::motion::Rolling;
+use calcine_coupler::motion::{Cohesion, Rolling};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{
-    CohesionArea, ContactModel, PairConstants, RollingSpring, constant_torque, elastic_plastic,
-    friction, sjkr,
+    AdhesiveContact, CohesionArea, ContactModel, PairConstants, RollingSpring, constant_torque,
+    elastic_plastic, friction, jkr, sjkr,
 };
 
 use super::energy::ContactEnergy;
@@ -14,7 +14,7 @@ use super::rules::ContactRules;
 pub struct SurfaceOverlap {
     /// Unit normal from the other body to the sphere.
     pub normal: Vec3,
-    /// Overlap δ in m.
+    /// Overlap δ in m; negative where adhesion holds surfaces that have parted.
     pub overlap: f64,
     /// Effective radius in m.
     pub radius: f64,
@@ -28,7 +28,7 @@ pub struct SurfaceOverlap {
     pub rotation: Vec3,
     /// 7/5 of the reduced moment m R² in kg m²; read with a rolling spring only.
     pub inertia: f64,
-    /// Contact area; read with cohesion only.
+    /// Contact area; read with `sjkr` only.
     pub area: CohesionArea,
 }
 
@@ -56,21 +56,27 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     budget: &mut ContactEnergy,
 ) -> ContactLoad {
     let normal = surfaces.normal;
+    let adhesion = match rules.cohesion {
+        Cohesion::Jkr => jkr(pair, surfaces.overlap, surfaces.radius),
+        Cohesion::None | Cohesion::Sjkr => AdhesiveContact::none(surfaces.overlap),
+    };
     let springs = law.springs(
         pair,
         prepared,
-        surfaces.overlap,
+        adhesion.hertz_overlap,
         surfaces.radius,
         surfaces.mass,
     );
+    let elastic = springs.elastic + adhesion.pull;
     let approach = surfaces.velocity.dot(&normal);
-    let mut damped = springs.elastic - springs.normal_damping * approach;
-    if !rules.attractive && damped < 0.0 {
-        damped = 0.0;
+    let mut damped = elastic - springs.normal_damping * approach;
+    // Damping pulls no more than adhesion does.
+    if !rules.attractive && damped < elastic.min(0.0) {
+        damped = elastic.min(0.0);
     }
     let mut push = damped;
-    let mut stored = springs.energy;
-    if rules.cohesion {
+    let mut stored = springs.energy + adhesion.energy;
+    if rules.cohesion == Cohesion::Sjkr {
         let (pull, energy) = sjkr(pair, surfaces.area);
         push += pull;
         stored += energy;
@@ -78,8 +84,9 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     let slip = surfaces.velocity - approach * normal - surfaces.turning.cross(&normal);
     let mut moved = *shift + slip * step;
     moved -= moved.dot(&normal) * normal;
-    // Friction is limited by the force without attraction.
-    let limit = pair.friction * damped.abs();
+    // Friction is limited by the force without attraction, of an adhesive contact by what presses beyond the pull-off force twice.
+    let load = damped + 2.0 * adhesion.pull_off;
+    let limit = pair.friction * load.abs();
     let mut tangential = friction::<L>(moved, slip, &springs, limit);
     *shift = tangential.shift;
     // An evaluation that only looks must not take a contact that slides for one that sticks: rounding
@@ -94,15 +101,15 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         Rolling::None => Vec3::zeros(),
         Rolling::ConstantTorque => constant_torque(
             pair,
-            springs.elastic,
+            elastic + 2.0 * adhesion.pull_off,
             surfaces.radius,
             surfaces.rotation,
             normal,
         ),
         Rolling::ElasticPlastic => {
             let spring = RollingSpring {
-                force: damped,
-                stiffness: springs.elastic / surfaces.overlap,
+                force: load,
+                stiffness: springs.elastic / adhesion.hertz_overlap,
                 radius: surfaces.radius,
                 inertia: surfaces.inertia,
             };
@@ -113,7 +120,7 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     if BUDGET {
         budget.elastic_normal += stored;
         budget.elastic_tangential += 0.5 * springs.tangential_stiffness * shift.norm_squared();
-        budget.lost_normal += (springs.elastic - damped) * approach * step;
+        budget.lost_normal += (elastic - damped) * approach * step;
         // The block takes off what its springs hold more than before.
         budget.lost_tangential -= tangential.force.dot(&slip) * step;
         budget.lost_rolling -= rolling.dot(&surfaces.rotation) * step;

@@ -9,7 +9,7 @@ pub struct ContactEnergy {
     pub elastic_normal: f64,
     /// In tangential springs now.
     pub elastic_tangential: f64,
-    /// Lost in normal damping.
+    /// Lost in normal damping, and where adhesive contacts tear off.
     pub lost_normal: f64,
     /// Lost in sliding and tangential damping, with what a tangential spring loses or gains while its
     /// stiffness follows the overlap.

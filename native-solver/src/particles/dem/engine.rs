@@ -488,6 +488,8 @@ impl Engine {
 
     fn find_with<L: ContactModel>(&mut self, law: &L, prepares: bool) {
         let parallel = self.parallel();
+        let radii = self.spheres.place.iter().map(|place| place.radius);
+        let largest = radii.fold(0.0, f64::max);
         let task = SearchInputs {
             law,
             prepares,
@@ -496,6 +498,7 @@ impl Engine {
             bounds: self.contacts.bounds,
             periodicity: &self.contacts.periodicity,
             skin: self.skin,
+            reach: self.skin + self.rules.longest_tear_off(largest),
             stamp: self.stamp,
         };
         self.search.run(

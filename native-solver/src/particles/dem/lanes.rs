@@ -177,6 +177,7 @@ impl Batch {
                 rolling_friction: 0.0,
                 rolling_damping: 0.0,
                 cohesion_energy: 0.0,
+                work_of_adhesion: 0.0,
             };
             let between = [self.between[0][l], self.between[1][l], self.between[2][l]];
             let velocity = [

@@ -12,7 +12,7 @@ use super::sphere::{SphereLoad, Spheres};
 use super::stored_contacts::StoredContacts;
 use super::walls::WallBody;
 use super::walls::{shape, triangle};
-use calcine_coupler::motion::Rolling;
+use calcine_coupler::motion::{Cohesion, Rolling};
 use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 
@@ -46,8 +46,10 @@ pub struct SearchInputs<'a, L> {
     pub bounds: (Vec3, Vec3),
     /// Directions in which they repeat.
     pub periodicity: &'a Periodicity,
-    /// Surfaces nearer than this are candidates, in m.
+    /// Surfaces nearer than this may touch before the next search, in m.
     pub skin: f64,
+    /// Surfaces nearer than this are candidates, in m: the skin, and how far adhesion holds those that touch.
+    pub reach: f64,
     /// The evaluation in which carried contacts touched.
     pub stamp: u64,
 }
@@ -64,10 +66,10 @@ impl NeighbourSearch {
     ) {
         spheres.drop_images();
         self.sort(task, spheres);
-        spheres.add_images(task.periodicity, task.skin);
+        spheres.add_images(task.periodicity, task.reach);
         self.stored.sort(spheres.len());
         self.grid
-            .fill(&spheres.place, spheres.len(), task.bounds, task.skin);
+            .fill(&spheres.place, spheres.len(), task.bounds, task.reach);
         self.near_triangles(task, spheres);
         let size = size(spheres.len());
         blocks.resize_with(spheres.len().div_ceil(size), Block::default);
@@ -132,7 +134,7 @@ impl NeighbourSearch {
                     if level == own && other <= i {
                         continue;
                     }
-                    let cut = place.radius + spheres.place[seen].radius + task.skin;
+                    let cut = place.radius + spheres.place[seen].radius + task.reach;
                     let apart = (spheres.place[seen].centre - place.centre).norm_squared();
                     let held =
                         spheres.moves[i].inverse_mass + spheres.moves[other].inverse_mass == 0.0;
@@ -167,9 +169,13 @@ impl NeighbourSearch {
         if task.rules.rolling == Rolling::ElasticPlastic {
             list.rolling.push(rolling);
         }
+        let pair = task.rules.pair(spheres.material[i], spheres.material[j]);
+        let [a, b] = [i, j].map(|k| spheres.place[k].radius);
+        if task.rules.cohesion == Cohesion::Jkr {
+            let tear_off = task.rules.tear_off(pair, a * b / (a + b));
+            list.tear_off.push(tear_off);
+        }
         if task.prepares {
-            let pair = task.rules.pair(spheres.material[i], spheres.material[j]);
-            let [a, b] = [i, j].map(|k| spheres.place[k].radius);
             let mass = 1.0 / (spheres.moves[i].inverse_mass + spheres.moves[j].inverse_mass);
             list.prepared
                 .push(task.law.prepare(pair, a * b / (a + b), mass));
@@ -205,7 +211,7 @@ impl NeighbourSearch {
                     let triangles = near[..count].iter().map(|one| one[2]);
                     block.walls.add(particle, wall_index, triangles, true);
                 } else if shape::nearest(&wall.shape, wall.own(place.centre))
-                    .is_some_and(|near| near.distance < place.radius + task.skin)
+                    .is_some_and(|near| near.distance < place.radius + task.reach)
                 {
                     block
                         .walls
@@ -252,13 +258,13 @@ impl NeighbourSearch {
                 let [a, b, c] = corners.map(|corner| wall.placed(corner));
                 let span = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
                 let list = &mut self.triangles;
-                self.grid.within(span, task.skin, |sphere| {
+                self.grid.within(span, task.reach, |sphere| {
                     // Triangles have images of their own.
                     if sphere as usize >= spheres.len() {
                         return;
                     }
                     let place = &spheres.place[sphere as usize];
-                    let reach = place.radius + task.skin;
+                    let reach = place.radius + task.reach;
                     let (point, _) = triangle::nearest(place.centre, &[a, b, c]);
                     if (place.centre - point).norm_squared() < reach * reach {
                         list.push([sphere, index as u32, k as u32]);

@@ -1,7 +1,7 @@
 //! What the forces of a run depend on, worked out once.
 
 use calcine_coupler::motion::{Cohesion, Contacts, Rolling};
-use calcine_coupler::physics::contact::PairConstants;
+use calcine_coupler::physics::contact::{PairConstants, tear_off_distance};
 
 /// Options and constants of pairs.
 #[derive(Clone, Debug)]
@@ -13,8 +13,8 @@ pub struct ContactRules {
     pub attractive: bool,
     /// Resistance to rolling.
     pub rolling: Rolling,
-    /// True with cohesion.
-    pub cohesion: bool,
+    /// Attraction.
+    pub cohesion: Cohesion,
 }
 
 impl ContactRules {
@@ -29,6 +29,7 @@ impl ContactRules {
                 rolling_friction: given.rolling_friction,
                 rolling_damping: given.rolling_damping,
                 cohesion_energy: given.cohesion_energy,
+                work_of_adhesion: given.work_of_adhesion,
                 ..PairConstants::new(
                     elastic(k / materials),
                     elastic(k % materials),
@@ -41,7 +42,7 @@ impl ContactRules {
             materials,
             attractive: contacts.law.attractive_damping,
             rolling: contacts.law.rolling,
-            cohesion: contacts.law.cohesion != Cohesion::None,
+            cohesion: contacts.law.cohesion,
         }
     }
 
@@ -52,6 +53,24 @@ impl ContactRules {
             [only] => Some(only),
             _ => None,
         }
+    }
+
+    /// Distance in m of surfaces up to which a contact that was made holds, for a pair of materials and an effective radius in m.
+    #[inline(always)]
+    pub fn tear_off(&self, pair: &PairConstants, radius: f64) -> f64 {
+        match self.cohesion {
+            Cohesion::Jkr => tear_off_distance(pair, radius),
+            Cohesion::None | Cohesion::Sjkr => 0.0,
+        }
+    }
+
+    /// The longest such distance in m of all materials, for particles of at most a radius in m.
+    pub fn longest_tear_off(&self, radius: f64) -> f64 {
+        let pairs = self.pairs.iter();
+        // Against a flat wall the effective radius is that of the particle; distances grow with it.
+        pairs
+            .map(|pair| self.tear_off(pair, radius))
+            .fold(0.0, f64::max)
     }
 
     /// Constants of a pair of materials.

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use calcine_coupler::excursion::Excursion;
-use calcine_coupler::motion::{Rolling, WallShape};
+use calcine_coupler::motion::{Cohesion, Rolling, WallShape};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
+use calcine_coupler::physics::contact::{CohesionArea, ContactModel, tear_off_energy};
 
 use super::super::contact::{SurfaceOverlap, evaluate};
 use super::super::deep;
@@ -131,10 +131,20 @@ impl WallContacts {
             let prepared = self.prepared.get(k).copied().unwrap_or(0.0);
             let load = &mut load[group.particle as usize];
             let own = wall.own(place.centre);
+            let pair = scene
+                .rules
+                .pair(scene.spheres.material[index], wall.material);
+            let tear_off = scene.rules.tear_off(pair, place.radius);
+            let reach = place.radius + tear_off;
             let mut touch = |near: NearestPoint, slots: &mut [WallContactMemory]| {
                 let point = own - near.distance * near.normal;
                 let found = Found { near, point };
                 let inside = place.radius - near.distance;
+                // Where surfaces have parted, adhesion holds a contact that was made.
+                let parted = tear_off > 0.0 && inside <= 0.0;
+                if parted && touched(slots, point, place.radius, scene.stamp).is_none() {
+                    return;
+                }
                 if deep::beyond(inside, [place.radius; 2]) > 0.0 {
                     deep::note(deep, scene.spheres, [index; 2], inside);
                 }
@@ -145,7 +155,7 @@ impl WallContacts {
                     let near = &self.triangles
                         [group.triangles.start as usize..group.triangles.end as usize];
                     let mut touches = [TriangleTouch::default(); MOST];
-                    let found = touching(near, triangles, own, place.radius, &mut touches);
+                    let found = touching(near, triangles, own, reach, &mut touches);
                     let touches = &mut touches[..found];
                     let kept =
                         triangle::keep_distinct(touches, triangles, place.radius, slots.len());
@@ -159,11 +169,15 @@ impl WallContacts {
                 }
                 other => {
                     if let Some(near) = shape::nearest(other, own)
-                        && near.distance < place.radius
+                        && near.distance < reach
                     {
                         touch(near, slots);
                     }
                 }
+            }
+            if BUDGET && tear_off > 0.0 {
+                let torn = slots.iter().filter(|slot| slot.stamp + 1 == scene.stamp);
+                budget.lost_normal += torn.count() as f64 * tear_off_energy(pair, place.radius);
             }
             if presses {
                 self.pressed[group.wall as usize] -= load.force - before;
@@ -197,15 +211,10 @@ fn touching(
     found
 }
 
-/// The memory of a contact: of the slot that touched in the last evaluation near this point, else a free one.
+/// The slot that touched in the last evaluation near this point; where there is one slot only, anywhere.
 #[inline(always)]
-fn memory(
-    slots: &mut [WallContactMemory],
-    point: Vec3,
-    radius: f64,
-    stamp: u64,
-    alone: bool,
-) -> Option<&mut WallContactMemory> {
+fn touched(slots: &[WallContactMemory], point: Vec3, radius: f64, stamp: u64) -> Option<usize> {
+    let alone = slots.len() == 1;
     let mut best: Option<(usize, f64)> = None;
     for (k, slot) in slots.iter().enumerate() {
         let square = (slot.point - point).norm_squared();
@@ -216,7 +225,18 @@ fn memory(
             best = Some((k, square));
         }
     }
-    if let Some((k, _)) = best {
+    best.map(|(k, _)| k)
+}
+
+/// The memory of a contact: of the slot that touched in the last evaluation near this point, else a free one.
+#[inline(always)]
+fn memory(
+    slots: &mut [WallContactMemory],
+    point: Vec3,
+    radius: f64,
+    stamp: u64,
+) -> Option<&mut WallContactMemory> {
+    if let Some(k) = touched(slots, point, radius, stamp) {
         return slots.get_mut(k);
     }
     // One that did not touch last, or else one that is not used now.
@@ -243,8 +263,7 @@ fn contact<L: ContactModel, const BUDGET: bool>(
 ) {
     let SpherePosition { centre, radius } = scene.spheres.place[index];
     let moves = &scene.spheres.moves[index];
-    let alone = slots.len() == 1;
-    let Some(slot) = memory(slots, found.point, radius, scene.stamp, alone) else {
+    let Some(slot) = memory(slots, found.point, radius, scene.stamp) else {
         return;
     };
     (slot.point, slot.stamp) = (found.point, scene.stamp);
@@ -265,7 +284,7 @@ fn contact<L: ContactModel, const BUDGET: bool>(
             Rolling::ElasticPlastic => 1.4 * radius * radius / moves.inverse_mass,
             _ => 0.0,
         },
-        area: if scene.rules.cohesion {
+        area: if scene.rules.cohesion == Cohesion::Sjkr {
             CohesionArea::of_wall(radius, distance)
         } else {
             CohesionArea {
