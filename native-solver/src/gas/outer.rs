@@ -195,7 +195,7 @@ impl Equations {
             if verdict != Verdict::GoOn {
                 self.acceleration.forget();
             }
-            if pace.accelerated {
+            if pace.accelerated || verdict != Verdict::GoOn {
                 self.best.offer(now, self.flow);
             }
             if pace.accelerated && verdict == Verdict::GoOn && outer < controls.outer_iterations {
