@@ -1,6 +1,7 @@
 // The stages of an attempt, each with an outer loop: one, or the two implicit ones of docs/theory.md (TSM-11), gamma = 1 - 1/sqrt(2). The
 // second is a step over gamma of the window from the start and (1 - gamma)/gamma times what the first changed, in what cells hold.
 #include "gas.H"
+#include "acceleration.H"
 #include "correctionPace.H"
 
 namespace
@@ -103,6 +104,11 @@ void Foam::calcine::gas::step(report& result)
 {
     result = report();
     correctionPace pace(outer_);
+    acceleration iterates;
+    const accelerated flow
+    {
+        U_.primitiveFieldRef(), pressureGradient_, pressureAlong_, p_.primitiveFieldRef(), flux_
+    };
     for (label outer = 1; outer <= max(outer_.iterations, 1); ++outer)
     {
         // The switching of limiters may otherwise lead from one iterate to another and back for ever.
@@ -110,9 +116,17 @@ void Foam::calcine::gas::step(report& result)
         updateBasePressure();
         const scalarField rho(density());
         setFlux();
+        const bool combines = pace.accelerated();
+        if (combines)
+        {
+            iterates.begin(flow, mass_, pressureShare_/momentumDiagonal_);
+        }
         result.residual = predictVelocity(rho, result);
         result.residual = max(result.residual, assemblePressure(rho, outer == 1));
-        pace.judge(outer - 1, result.residual);
+        if (pace.judge(outer - 1, result.residual))
+        {
+            iterates.forget();
+        }
         // Friction at walls and what transport does at faces follow a longer sequence of corrections (native-solver/src/gas/friction.rs).
         follows_ = pace.corrections() > holding_;
         holdFriction();
@@ -139,6 +153,13 @@ void Foam::calcine::gas::step(report& result)
         {
             result.converged = true;
             break;
+        }
+        if (combines && outer < outer_.iterations)
+        {
+            iterates.combine(flow, pace.share());
+            U_.correctBoundaryConditions();
+            p_.correctBoundaryConditions();
+            mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         }
     }
     closeReactions(result);

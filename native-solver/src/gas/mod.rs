@@ -1,6 +1,7 @@
 //! The native gas: finite volumes on a general polyhedral mesh, low-Mach ideal gas, volume
 //! fraction in every term, one file per equation.
 
+mod acceleration;
 mod attempt;
 mod backflow;
 mod balance;

@@ -6,13 +6,14 @@ use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::part::{Convergence, GasPhases};
 use calcine_coupler::setup::GasControls;
 
+use super::acceleration::Acceleration;
 use super::attempt::{AttemptFrame, CellProperties};
 use super::chemistry::{CellChemistry, ReactionSource, ScalarEquations};
 use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
-use super::pace::Pace;
+use super::pace::{Pace, Verdict};
 use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
@@ -85,9 +86,10 @@ pub struct Equations {
     /// Windows so far.
     windows: u32,
     best: Best,
+    acceleration: Acceleration,
 }
 
-/// The best that an outer loop had when the number of its pressure corrections changed, in memory that is kept.
+/// The best that an outer loop had from when its pace did not suffice on, in memory that is kept.
 #[derive(Debug, Default)]
 struct Best {
     state: GasState,
@@ -126,6 +128,7 @@ impl Equations {
             watch: Stopwatch::new(),
             windows: 0,
             best: Best::default(),
+            acceleration: Acceleration::default(),
         }
     }
 
@@ -156,6 +159,9 @@ impl Equations {
         let mut pace = Pace::new(controls, self.flow);
         self.best.flow = None;
         for outer in 1..=controls.outer_iterations.max(1) {
+            if pace.accelerated {
+                self.begin_accelerated(frame, now);
+            }
             let iterated = self.iterate(frame, controls, pace.corrections, now);
             convergence.outer_iterations = outer;
             if outer >= FOLLOWED {
@@ -185,8 +191,15 @@ impl Equations {
                 // What is left of continuity is in few cells.
                 self.closer *= 0.1;
             }
-            if pace.judge(controls, outer, self.flow) {
+            let verdict = pace.judge(controls, outer, self.flow);
+            if verdict != Verdict::GoOn {
+                self.acceleration.forget();
+            }
+            if pace.accelerated || verdict != Verdict::GoOn {
                 self.best.offer(now, self.flow);
+            }
+            if pace.accelerated && verdict == Verdict::GoOn && outer < controls.outer_iterations {
+                self.combine(frame, pace.share, now);
             }
         }
         // What longer sequences made worse until the end.
@@ -201,6 +214,23 @@ impl Equations {
             self.momentum.update_gradients(frame, &now.velocity);
         }
         Ok(convergence)
+    }
+
+    /// Takes up the flow before an accelerated iteration.
+    fn begin_accelerated(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
+        let diagonal = self.momentum.matrix.diagonal();
+        let push =
+            |cell: usize| frame.pressure_share[cell] * frame.grid.volume[cell] / diagonal[cell];
+        self.acceleration.begin(now, self.pressure.along(), push);
+    }
+
+    /// Combines the flow after an iteration with that of earlier ones, and assembles the next one's equations with it.
+    fn combine(&mut self, frame: &AttemptFrame<'_>, share: f64, now: &mut GasState) {
+        self.acceleration
+            .combine(now, self.pressure.along_mut(), share);
+        pressure::advance_mass(frame, now);
+        self.watch.lap(&mut self.phases.momentum);
+        self.assess_flow(frame, now);
     }
 
     /// Takes up the best state, once; its residual.

@@ -1,5 +1,6 @@
-//! How many pressure corrections an outer iteration takes: the case's, and twice as many, and again, where at the pace of
-//! momentum and continuity the outer loop would not reach its tolerance within its iterations. Where the residual grows with the most, half as many
+//! What an outer loop does where, at the pace of momentum and continuity, it would not reach its tolerance within its iterations. An outer iteration
+//! takes twice as many pressure corrections as the case asks for, and again. Where the residual grows, or the most of them do not suffice, its
+//! iterations are accelerated ([`super::acceleration`]), which ends growth; and where it grows with acceleration and the most corrections, half as many
 //! are the most from then on: on stretched tetrahedra long sequences diverge.
 
 use std::collections::VecDeque;
@@ -7,16 +8,36 @@ use std::collections::VecDeque;
 use calcine_coupler::setup::GasControls;
 
 /// Outer iterations over which a pace is judged: the first after a change still has what was there before.
-const JUDGED: usize = 3;
+const PLAIN: usize = 3;
+/// The same of accelerated iterations, whose residual does not fall in each.
+const ACCELERATED: usize = 6;
+/// By so much the share of what iterations change becomes smaller where the residual grew, and where it ends.
+const DAMPED: f64 = 0.5;
+const LEAST: f64 = 0.25;
+
+/// What changes after an outer iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing.
+    GoOn,
+    /// Iterations are accelerated from the next one on.
+    Accelerate,
+    /// The number of pressure corrections.
+    Corrections,
+}
 
 /// The number of corrections, and the pace at which they take the residual down.
 #[derive(Clone, Debug)]
 pub struct Pace {
     /// Pressure corrections of an outer iteration.
     pub corrections: u32,
+    /// True where iterations are accelerated.
+    pub accelerated: bool,
+    /// Share of what an accelerated iteration changes that is taken.
+    pub share: f64,
     fewest: u32,
     most: u32,
-    /// The last residuals with this number of corrections, oldest first.
+    /// The last residuals at this pace, oldest first.
     residuals: VecDeque<f64>,
 }
 
@@ -26,47 +47,61 @@ impl Pace {
         let corrections = controls.pressure_corrections.max(1);
         Self {
             corrections,
+            accelerated: false,
+            share: 1.0,
             fewest: corrections,
             most: controls.most_pressure_corrections.max(corrections),
             residuals: VecDeque::from([residual]),
         }
     }
 
-    /// Takes the case's number again, at a residual.
+    /// Takes the case's number again and nothing else, at a residual.
     pub fn go_back(&mut self, residual: f64) {
         self.corrections = self.fewest;
         self.most = self.fewest;
+        self.accelerated = false;
         self.residuals = VecDeque::from([residual]);
     }
 
-    /// Takes up the residual after an outer iteration; true where the number changes.
-    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) -> bool {
+    /// Takes up the residual after an outer iteration.
+    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) -> Verdict {
+        let last = self.residuals.back().copied().unwrap_or(residual);
         self.residuals.push_back(residual);
-        if self.residuals.len() <= JUDGED || self.most == self.fewest {
-            return false;
+        // A residual that is NaN grew.
+        let fell = residual < last;
+        if self.accelerated && !fell {
+            self.share = (DAMPED * self.share).max(LEAST);
+        }
+        let judged = if self.accelerated { ACCELERATED } else { PLAIN };
+        if self.residuals.len() <= judged {
+            return Verdict::GoOn;
         }
         let before = self.residuals.pop_front().unwrap_or(residual);
+        let left = f64::from(controls.outer_iterations.saturating_sub(outer));
+        let pace = (residual / before).powf(1.0 / judged as f64);
+        let suffices =
+            |iterations: f64| residual * pace.powf(iterations) <= controls.outer_tolerance;
+        if suffices(left) {
+            return Verdict::GoOn;
+        }
+        let grew = !(residual < before);
         let last = self.corrections;
-        if last == self.most {
-            // A residual that is NaN grew.
-            let fell = residual < before;
-            if !fell {
-                self.most = (last / 2).max(self.fewest);
-                self.corrections = self.most;
-            }
+        let verdict = if !self.accelerated && (grew || last == self.most) {
+            self.accelerated = true;
+            self.share = if grew { DAMPED } else { 1.0 };
+            Verdict::Accelerate
+        } else if last < self.most {
+            self.corrections = (2 * last).min(self.most);
+            Verdict::Corrections
+        } else if grew && self.most > self.fewest {
+            self.most = (last / 2).max(self.fewest);
+            self.corrections = self.most;
+            Verdict::Corrections
         } else {
-            let left = controls.outer_iterations.saturating_sub(outer);
-            let pace = (residual / before).powf(1.0 / JUDGED as f64);
-            let expected = residual * pace.powf(f64::from(left));
-            if expected > controls.outer_tolerance {
-                self.corrections = (2 * last).min(self.most);
-            }
-        }
-        let changed = self.corrections != last;
-        if changed {
-            self.residuals = VecDeque::from([residual]);
-        }
-        changed
+            return Verdict::GoOn;
+        };
+        self.residuals = VecDeque::from([residual]);
+        verdict
     }
 }
 
@@ -86,40 +121,59 @@ mod tests {
         }
     }
 
-    /// Corrections after outer iterations that multiply the residual by a factor each.
-    fn after(factor: f64, iterations: u32) -> u32 {
+    /// The pace after outer iterations that multiply the residual by a factor each.
+    fn after(factor: f64, iterations: u32) -> Pace {
         let mut pace = Pace::new(&controls(), 1.0);
         for outer in 1..=iterations {
             pace.judge(&controls(), outer, factor.powi(outer as i32));
         }
-        pace.corrections
+        pace
     }
 
     #[test]
-    fn corrections_stay_where_the_pace_suffices() {
-        // 20 iterations of 0.39 make 7e-9.
-        assert_eq!(after(0.39, 19), 2);
+    fn iterations_stay_as_they_are_where_the_pace_suffices() {
+        // 20 iterations of 0.39 make 7e-9, and of 0.41 2e-8.
+        let pace = after(0.39, 19);
+        assert_eq!((pace.corrections, pace.accelerated), (2, false));
+        assert_eq!([2, 3].map(|done| after(0.41, done).corrections), [2, 4]);
+    }
+
+    #[test]
+    fn corrections_double_up_to_the_most_and_then_iterations_are_accelerated() {
+        let paces = [2, 3, 6, 9, 20].map(|done| after(0.5, done));
+        assert_eq!(
+            paces.each_ref().map(|pace| pace.corrections),
+            [2, 4, 7, 7, 7]
+        );
+        assert_eq!(
+            paces.map(|pace| pace.accelerated),
+            [false, false, false, true, true]
+        );
+    }
+
+    #[test]
+    fn iterations_are_accelerated_where_the_residual_grows() {
+        let pace = after(1.5, 3);
+        assert_eq!(
+            (pace.corrections, pace.accelerated, pace.share),
+            (2, true, 0.5)
+        );
+        assert_eq!(after(1.5, 4).share, 0.25);
     }
 
     #[test]
     fn corrections_halve_where_the_residual_grows_with_the_most() {
         let mut pace = Pace::new(&controls(), 1.0);
-        let residuals = [0.9, 0.8, 0.7, 0.8, 0.9, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-        let corrections: Vec<_> = (1..)
-            .zip(residuals)
-            .filter(|&(outer, residual)| pace.judge(&controls(), outer, residual))
-            .map(|(outer, _)| outer)
-            .collect();
-        // To 4, to 7, to 3, to 2.
-        assert_eq!(corrections, [3, 6, 9, 12]);
-        assert_eq!(pace.corrections, 2);
-        let later = (13..19).map(|outer| pace.judge(&controls(), outer, 7.0));
-        assert!(!later.collect::<Vec<_>>().contains(&true));
-    }
-
-    #[test]
-    fn corrections_double_up_to_the_most_where_it_does_not() {
-        assert_eq!([2, 3, 6, 9].map(|done| after(0.5, done)), [2, 4, 7, 7]);
-        assert_eq!(after(1.5, 6), 7);
+        let mut changes = Vec::new();
+        for outer in 1..60 {
+            let last = pace.corrections;
+            pace.judge(&controls(), outer, f64::from(outer) + 1.0);
+            if pace.corrections != last {
+                changes.push((outer, pace.corrections));
+            }
+        }
+        assert_eq!(changes, [(9, 4), (15, 7), (21, 3), (27, 2)]);
+        pace.go_back(1.0);
+        assert!(!pace.accelerated);
     }
 }

@@ -180,6 +180,16 @@ impl Pressure {
         }
     }
 
+    /// The gradient in Pa/m that carries pressures along faces; empty where no centre is displaced along a face.
+    pub fn along(&self) -> &[Vec3] {
+        &self.along
+    }
+
+    /// The same, to change.
+    pub fn along_mut(&mut self) -> &mut [Vec3] {
+        &mut self.along
+    }
+
     /// Takes up the state from which the frame steps.
     pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
         let (grid, old) = (frame.grid, frame.old);

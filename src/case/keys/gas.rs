@@ -202,11 +202,11 @@ const SCHEMES: &[Key] = &[
 
 #[rustfmt::skip]
 const CONTROLS: &[Key] = &[
-    key("outer_iterations", Whole(1, 10_000), Default("20"), "Outer iterations per window at most.", "20"),
+    key("outer_iterations", Whole(1, 10_000), Default("30"), "Outer iterations per window at most.", "30"),
     key("convection", Either(&Choice(words::<Convection>), &Table(SCHEMES)), Default("van-leer"), "How velocity, enthalpy and composition are carried to faces: second order with van Leer's limiter; first-order upwind; or central differences of velocity and enthalpy, which no limiter bounds, and of composition van Leer's limiter; `{ central = 0.9 }` mixes them with upwind, `{ limited_linear = 1 }` limits them.", "\"upwind\""),
     key("time_scheme", Choice(words::<TimeScheme>), Default("euler"), "How velocity, enthalpy and composition are stepped over a window at an acceleration of 1: implicit Euler, first order; or two implicit stages, second order (SDIRK2). Implicit Euler under time splitting, where the gas reacts, and where particles give or take species.", "\"sdirk2\""),
     key("pressure_corrections", Whole(1, 10_000), Default("2"), "Pressure corrections per outer iteration.", "2"),
-    key("most_pressure_corrections", Whole(1, 10_000), Default("16"), "Where at the pace of momentum and continuity so far `outer_iterations` would not reach `outer_tolerance`, the pressure corrections are doubled, up to this many; with that of `pressure_corrections` or less they stay as they are.", "16"),
+    key("most_pressure_corrections", Whole(1, 10_000), Default("16"), "Where at the pace of momentum and continuity so far `outer_iterations` would not reach `outer_tolerance`, not even accelerated (Anderson), the pressure corrections are doubled, up to this many; with that of `pressure_corrections` or less they stay as they are.", "16"),
     key("outer_tolerance", Number(D::NONE, UpTo(0.0, 0.1)), Default("1e-6"), "The outer iterations end below this scaled residual.", "1e-6"),
     key("linear_tolerance", Number(D::NONE, Positive), Without("natively as close as the outer loop can make use of, in calcineGasFoam 1e-13"), "Tolerance of the linear solvers, relative to what moves.", "1e-13"),
 ];
