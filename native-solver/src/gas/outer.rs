@@ -179,6 +179,7 @@ impl Equations {
                     }
                     convergence.residual = self.go_back(frame, now);
                     pace.go_back(self.flow);
+                    self.acceleration.forget();
                     continue;
                 }
             }

@@ -11,6 +11,8 @@ use calcine_coupler::setup::GasControls;
 const PLAIN: usize = 3;
 /// The same of accelerated iterations, whose residual does not fall in each.
 const ACCELERATED: usize = 6;
+/// An iteration that multiplies the residual by more than this is judged alone.
+const RUNAWAY: f64 = 2.0;
 /// By so much the share of what iterations change becomes smaller where the residual grew, and where it ends.
 const DAMPED: f64 = 0.5;
 const LEAST: f64 = 0.25;
@@ -55,12 +57,12 @@ impl Pace {
         }
     }
 
-    /// Takes the case's number again and nothing else, at a residual.
+    /// Takes the case's number again, at a residual, where iterations failed: accelerated where those were not, with less of what changes where they were.
     pub fn go_back(&mut self, residual: f64) {
         self.corrections = self.fewest;
         self.most = self.fewest;
-        self.accelerated = false;
-        self.residuals = VecDeque::from([residual]);
+        let share = if self.accelerated { LEAST } else { DAMPED };
+        self.accelerate(share, residual);
     }
 
     /// Takes up the residual after an outer iteration.
@@ -71,6 +73,10 @@ impl Pace {
         let fell = residual < last;
         if self.accelerated && !fell {
             self.share = (DAMPED * self.share).max(LEAST);
+        }
+        let runs_away = residual.is_nan() || residual > RUNAWAY * last;
+        if runs_away && !self.accelerated && outer > 1 {
+            return self.accelerate(DAMPED, residual);
         }
         let judged = if self.accelerated { ACCELERATED } else { PLAIN };
         if self.residuals.len() <= judged {
@@ -84,24 +90,28 @@ impl Pace {
         if suffices(left) {
             return Verdict::GoOn;
         }
-        let grew = !(residual < before);
+        let grew = residual.is_nan() || residual >= before;
         let last = self.corrections;
-        let verdict = if !self.accelerated && (grew || last == self.most) {
-            self.accelerated = true;
-            self.share = if grew { DAMPED } else { 1.0 };
-            Verdict::Accelerate
-        } else if last < self.most {
+        if !self.accelerated && (grew || last == self.most) {
+            return self.accelerate(if grew { DAMPED } else { 1.0 }, residual);
+        }
+        if last < self.most {
             self.corrections = (2 * last).min(self.most);
-            Verdict::Corrections
         } else if grew && self.most > self.fewest {
             self.most = (last / 2).max(self.fewest);
             self.corrections = self.most;
-            Verdict::Corrections
         } else {
             return Verdict::GoOn;
-        };
+        }
         self.residuals = VecDeque::from([residual]);
-        verdict
+        Verdict::Corrections
+    }
+
+    fn accelerate(&mut self, share: f64, residual: f64) -> Verdict {
+        self.accelerated = true;
+        self.share = share;
+        self.residuals = VecDeque::from([residual]);
+        Verdict::Accelerate
     }
 }
 
@@ -174,6 +184,6 @@ mod tests {
         }
         assert_eq!(changes, [(9, 4), (15, 7), (21, 3), (27, 2)]);
         pace.go_back(1.0);
-        assert!(!pace.accelerated);
+        assert_eq!((pace.corrections, pace.share), (2, 0.25));
     }
 }
