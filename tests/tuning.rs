@@ -267,6 +267,72 @@ fn bad_tuning_files_are_refused_at_their_line() {
     }
 }
 
+/// Warnings of a case with curves beside it, by their names.
+fn warned(case: &str, files: &[(&str, &str)]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, csv) in files {
+        fs::write(folder.path().join(name), csv).unwrap();
+    }
+    let read = parse_tuning(&folder.path().join("case.toml"), case, &[]);
+    read.map_err(|errors| errors.to_string()).unwrap().warnings
+}
+
+#[test]
+fn what_is_likely_not_meant_is_told() {
+    assert_eq!(warned(CASE, &[("a.csv", &plain())]), Vec::<String>::new());
+    // Temperatures in degrees Celsius under a heading of kelvin.
+    let kelvin = curve("Time (min),Temp (K),Mass (%)", |t, temp, m| {
+        format!("{t},{},{m:.4}", temp - 270.0)
+    });
+    let [cold] = &warned(CASE, &[("a.csv", &kelvin)])[..] else {
+        panic!("one warning");
+    };
+    assert!(
+        cold.starts_with("a.csv begins at -243.1 °C (30.0 K): is the unit"),
+        "{cold}"
+    );
+    // A row that a balance lost, of a rise that the case allows.
+    let lost = plain().replace("27.5,850,60.0508", "27.5,850,20");
+    assert_ne!(lost, plain());
+    let allowed = format!("{CASE}largest_rise = \"90 %\"");
+    let [lone] = &warned(&allowed, &[("a.csv", &lost)])[..] else {
+        panic!("one warning");
+    };
+    assert!(
+        lone.starts_with("a.csv, line 57: the mass stands alone"),
+        "{lone}"
+    );
+    let refused = told(CASE, &lost);
+    assert!(
+        refused.contains(
+            "line 57: the mass is 20.000 % of that at the start in this row alone, and 60.0"
+        ),
+        "{refused}"
+    );
+    // One curve twice.
+    let twice = format!("{CASE}[[targets]]\nfile = \"b.csv\"\nname = \"again\"\n");
+    let files = [("a.csv", &plain()[..]), ("b.csv", &plain()[..])];
+    let [same] = &warned(&twice, &files)[..] else {
+        panic!("one warning");
+    };
+    assert!(same.contains("and again have the same values"), "{same}");
+}
+
+#[test]
+fn a_stated_heating_rate_that_the_temperatures_contradict_is_refused() {
+    let case = |rate: f64| {
+        let start = "start_temperature = \"300 degC\"";
+        format!("{CASE}heating_rate = \"{rate} K/min\"\n{start}\n")
+    };
+    assert_eq!(told(&case(20.0), &plain()), "");
+    let refused = told(&case(15.0), &plain());
+    assert!(
+        refused
+            .contains("is 15.0000 K/min, but the temperatures of the file rise by 20.0000 K/min"),
+        "{refused}"
+    );
+}
+
 #[test]
 fn files_of_other_instruments_give_the_same_curve() {
     let comma = |text: String| text.replace('.', ",");

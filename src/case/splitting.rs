@@ -153,7 +153,7 @@ impl<'a> Splitting<'a> {
                 ),
             },
         ];
-        lines.extend(self.radiation.filter(|_| !self.resolved).map(|error| {
+        lines.extend(self.radiation.map(|error| {
             format!(
                 "0.18 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
                 above(error)

@@ -376,7 +376,7 @@ pub fn tune_sample(
     let energies = energies(case);
     warnings.extend(warn::pairs(problem.space(), &known.pairs));
     warnings.extend(warn::one_rate(case, &laws, chosen, &known.found));
-    warnings.extend(warn::energies_differ(&energies, &known.found));
+    warnings.extend(warn::energies_differ(&energies, &known.found, &laws));
     problem.differences(&search.fitted.places, &mut out)?;
     let mut all_curves = curves(&problem, &search.fitted.places, true)?;
     if !case.kept_back.is_empty() {

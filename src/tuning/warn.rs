@@ -10,8 +10,31 @@ use crate::case::units::short3;
 
 /// Heating rates that differ by less than this share are one.
 const SAME_RATE: f64 = 0.1;
-/// Energies that differ by more than this share are told.
+/// Energies that differ by more than this share are told, and by less where only one law was fitted.
 const OTHER_ENERGY: f64 = 0.1;
+const OF_ONE_LAW: f64 = 0.05;
+
+/// A run that begins colder than a furnace does.
+pub(crate) fn cold_start(file: &str, start: f64) -> String {
+    format!(
+        "{file} begins at {:.1} °C ({start:.1} K): is the unit of its temperature right? State it as `units.temperature`",
+        start - 273.15
+    )
+}
+
+/// A value that nothing beside it goes with.
+pub(crate) fn lone_value(file: &str, line: usize) -> String {
+    format!(
+        "{file}, line {line}: the mass stands alone, far off the rows before and after it; one such row can change law and energy: remove it if a reading failed"
+    )
+}
+
+/// One curve under two names.
+pub(crate) fn same_curve(one: &str, other: &str) -> String {
+    format!(
+        "the targets {one} and {other} have the same values: one of them counts twice; remove it"
+    )
+}
 
 /// A mass at the start that a curve of shares has no use for.
 pub(crate) fn weighs_no_share(unit: &str) -> String {
@@ -166,6 +189,7 @@ pub(super) fn one_rate(
 pub(super) fn energies_differ(
     energies: &LawFreeEnergies,
     found: &[FoundParameter],
+    laws: &[LawFit],
 ) -> Option<String> {
     let energy = found
         .iter()
@@ -181,10 +205,17 @@ pub(super) fn energies_differ(
     }
     let mean = inner.iter().sum::<f64>() / inner.len() as f64;
     let off = (energy / mean - 1.0).abs();
-    (off > OTHER_ENERGY).then(|| {
+    let (most, advice) = match laws {
+        [one] => (
+            OF_ONE_LAW,
+            format!("; only {} was fitted: compare laws = [\"all\"]", one.law),
+        ),
+        _ => (OTHER_ENERGY, String::new()),
+    };
+    (off > most).then(|| {
         format!(
             "the energy of {} kJ/mol differs from that without a law (Friedman, {} kJ/mol) by {:.0} %: the law does not fit, or heat \
-             transfer limits the rate",
+             transfer limits the rate{advice}",
             short3(energy / 1e3),
             short3(mean / 1e3),
             100.0 * off

@@ -6,7 +6,8 @@
 //!
 //! For linear equations that is GMRES with an outer iteration as its preconditioner, and it converges as well where a part of the flow grows in each
 //! iteration by itself: pressure corrections overshoot by friction on thin and stretched cells. The norm is
-//! that of momentum, Σ m |Δu|² + Σ m |χ V Δ∇p/a|² over cells, both in the velocities that they mean.
+//! that of momentum, Σ m |Δu|² + Σ m |χ V Δ∇p/a|² over cells, both in the velocities that they mean. `calcine_numerics::Anderson` is the method for
+//! short vectors: Euclidean norm, double precision, one thread, without β.
 
 use calcine_coupler::physics::Vec3;
 use nalgebra::{DMatrix, DVector};
@@ -28,7 +29,7 @@ struct Change {
 
 /// The last iterations of an outer loop, in memory that is kept from the first window on that needs it.
 #[derive(Debug, Default)]
-pub struct Acceleration {
+pub struct FlowAcceleration {
     /// x of the iteration at hand, then its f.
     step: Vec<f64>,
     /// x + f.
@@ -77,7 +78,7 @@ fn scatter(flow: &[f64], now: &mut GasState, along: &mut [Vec3]) {
     now.flux.copy_from_slice(flux);
 }
 
-impl Acceleration {
+impl FlowAcceleration {
     /// Drops what there is.
     pub fn forget(&mut self) {
         self.has_last = false;
@@ -245,7 +246,7 @@ mod tests {
         // Five different eigenvalues, three of them outside the unit circle: exact after five combinations, to what single precision leaves.
         let growth = [-3.0, 0.5, 1.8, -3.0, 0.2, -1.4];
         for share in [1.0, 0.5] {
-            let mut acceleration = Acceleration::default();
+            let mut acceleration = FlowAcceleration::default();
             let mut now = start();
             for _ in 0..7 {
                 acceleration.begin(&now, &[], |_| 1.0);
@@ -261,7 +262,7 @@ mod tests {
 
     #[test]
     fn an_iteration_that_changes_nothing_stays_there() {
-        let mut acceleration = Acceleration::default();
+        let mut acceleration = FlowAcceleration::default();
         let mut now = start();
         for _ in 0..3 {
             acceleration.begin(&now, &[], |_| 1.0);

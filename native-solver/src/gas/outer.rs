@@ -6,14 +6,14 @@ use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::part::{Convergence, GasPhases};
 use calcine_coupler::setup::GasControls;
 
-use super::acceleration::Acceleration;
+use super::acceleration::FlowAcceleration;
 use super::attempt::{AttemptFrame, CellProperties};
 use super::chemistry::{CellChemistry, ReactionSource, ScalarEquations};
 use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
-use super::pace::{Pace, Verdict};
+use super::pace::{Pace, PaceChange};
 use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
@@ -86,7 +86,7 @@ pub struct Equations {
     /// Windows so far.
     windows: u32,
     best: Best,
-    acceleration: Acceleration,
+    acceleration: FlowAcceleration,
 }
 
 /// The best that an outer loop had from when its pace did not suffice on, in memory that is kept.
@@ -128,7 +128,7 @@ impl Equations {
             watch: Stopwatch::new(),
             windows: 0,
             best: Best::default(),
-            acceleration: Acceleration::default(),
+            acceleration: FlowAcceleration::default(),
         }
     }
 
@@ -193,13 +193,14 @@ impl Equations {
                 self.closer *= 0.1;
             }
             let verdict = pace.judge(controls, outer, self.flow);
-            if verdict != Verdict::GoOn {
+            if verdict != PaceChange::GoOn {
                 self.acceleration.forget();
             }
-            if pace.accelerated || verdict != Verdict::GoOn {
+            if pace.accelerated || verdict != PaceChange::GoOn {
                 self.best.offer(now, self.flow);
             }
-            if pace.accelerated && verdict == Verdict::GoOn && outer < controls.outer_iterations {
+            if pace.accelerated && verdict == PaceChange::GoOn && outer < controls.outer_iterations
+            {
                 self.combine(frame, pace.share, now);
             }
         }

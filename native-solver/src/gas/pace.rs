@@ -19,7 +19,7 @@ const LEAST: f64 = 0.25;
 
 /// What changes after an outer iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PaceChange {
     /// Nothing.
     GoOn,
     /// Iterations are accelerated from the next one on.
@@ -66,7 +66,7 @@ impl Pace {
     }
 
     /// Takes up the residual after an outer iteration.
-    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) -> Verdict {
+    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) -> PaceChange {
         let last = self.residuals.back().copied().unwrap_or(residual);
         self.residuals.push_back(residual);
         // A residual that is NaN grew.
@@ -80,7 +80,7 @@ impl Pace {
         }
         let judged = if self.accelerated { ACCELERATED } else { PLAIN };
         if self.residuals.len() <= judged {
-            return Verdict::GoOn;
+            return PaceChange::GoOn;
         }
         let before = self.residuals.pop_front().unwrap_or(residual);
         let left = f64::from(controls.outer_iterations.saturating_sub(outer));
@@ -88,7 +88,7 @@ impl Pace {
         let suffices =
             |iterations: f64| residual * pace.powf(iterations) <= controls.outer_tolerance;
         if suffices(left) {
-            return Verdict::GoOn;
+            return PaceChange::GoOn;
         }
         let grew = residual.is_nan() || residual >= before;
         let last = self.corrections;
@@ -101,17 +101,17 @@ impl Pace {
             self.most = (last / 2).max(self.fewest);
             self.corrections = self.most;
         } else {
-            return Verdict::GoOn;
+            return PaceChange::GoOn;
         }
         self.residuals = VecDeque::from([residual]);
-        Verdict::Corrections
+        PaceChange::Corrections
     }
 
-    fn accelerate(&mut self, share: f64, residual: f64) -> Verdict {
+    fn accelerate(&mut self, share: f64, residual: f64) -> PaceChange {
         self.accelerated = true;
         self.share = share;
         self.residuals = VecDeque::from([residual]);
-        Verdict::Accelerate
+        PaceChange::Accelerate
     }
 }
 

@@ -13,6 +13,14 @@ use crate::tuning::curves::{
 };
 use crate::tuning::warn;
 
+/// A stated heating rate may differ from that of the file's temperatures by this share: a sample lags behind its furnace.
+const OTHER_RATE: f64 = 0.1;
+/// Below this temperature in K no furnace begins.
+const COLD: f64 = 230.0;
+/// A value that stands alone is above or below both of its neighbours, by so many times the change from most values to the next, and by this share of all
+/// that the curve spans.
+const ALONE: [f64; 2] = [12.0, 0.05];
+
 /// What the targets say.
 #[derive(Default)]
 pub(super) struct Targets {
@@ -38,7 +46,8 @@ impl Targets {
             let mut target = Target::of(table, folder);
             read.files.extend(target.path.clone());
             target.lumped = of == Some(TunedModel::Lumped);
-            for (curve, start) in target.curves().unwrap_or_default() {
+            for (curve, start, told) in target.curves().unwrap_or_default() {
+                read.warnings.extend(told);
                 if let Some(start) = &start
                     && target.sample_mass.is_some()
                     && !target.lumped
@@ -69,6 +78,15 @@ impl Targets {
             }
             names.push(name.clone());
             curve.name = name;
+        }
+        let twins = read.curves.iter().enumerate().find_map(|(k, one)| {
+            let same = |other: &&TargetCurve| {
+                other.run.times == one.run.times && other.values == one.values
+            };
+            Some((one, read.curves[k + 1..].iter().find(same)?))
+        });
+        if let Some((one, other)) = twins {
+            read.warnings.push(warn::same_curve(&one.name, &other.name));
         }
         read
     }
@@ -158,7 +176,8 @@ impl<'t, 'a> Target<'t, 'a> {
         );
     }
 
-    fn curves(&self) -> Option<Vec<(TargetCurve, Option<MassAtStart>)>> {
+    /// Each curve with what its masses are relative to and what is to be told of it.
+    fn curves(&self) -> Option<Vec<(TargetCurve, Option<MassAtStart>, Vec<String>)>> {
         let path = self.path.as_ref()?;
         let runs = match read_curves(path, &self.file) {
             Ok(runs) => runs,
@@ -170,14 +189,52 @@ impl<'t, 'a> Target<'t, 'a> {
         let several = runs.len() > 1;
         let curves = runs.into_iter().map(|run| {
             let start = run.start.clone();
-            Some((self.curve(run, several)?, start))
+            let told = self.told(path, &run);
+            Some((self.curve(run, several)?, start, told))
         });
         curves.collect()
+    }
+
+    /// What of a run is likely not meant so.
+    fn told(&self, path: &Path, run: &MeasuredRun) -> Vec<String> {
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        let mut told = Vec::new();
+        let start = run.temperature.first().copied();
+        if let Some(start) = start.or(self.start_temperature)
+            && start < COLD
+        {
+            told.push(warn::cold_start(&file, start));
+        }
+        if let Some(k) = lone_value(&run.mass) {
+            told.push(warn::lone_value(&file, run.lines[k]));
+        }
+        told
+    }
+
+    /// Refuses a stated heating rate that the file's own temperatures contradict.
+    fn agrees(&self, rate: f64, run: &MeasuredRun) -> Option<()> {
+        let (first, last) = (run.temperature.first(), run.temperature.last());
+        let (Some(first), Some(last), Some(span)) = (first, last, run.time.last()) else {
+            return Some(());
+        };
+        let own = (last - first) / span;
+        if (own / rate - 1.0).abs() <= OTHER_RATE {
+            return Some(());
+        }
+        let rule = format!(
+            "is {:.4} K/min, but the temperatures of the file rise by {:.4} K/min",
+            60.0 * rate,
+            60.0 * own
+        );
+        let help = "remove it, and the temperatures of the file are taken, or correct it";
+        self.table.fail("heating_rate", rule, help);
+        None
     }
 
     fn curve(&self, run: MeasuredRun, several: bool) -> Option<TargetCurve> {
         let programme = match self.heating_rate {
             Some(rate) => {
+                self.agrees(rate, &run)?;
                 let end = run.time.last().copied()?;
                 TemperatureProgramme::heating(self.start_temperature?, rate, end.max(1.0))
             }
@@ -265,6 +322,27 @@ impl<'t, 'a> Target<'t, 'a> {
         }
         Some(curve)
     }
+}
+
+/// The value farthest above or below both of its neighbours, where it stands alone.
+fn lone_value(values: &[f64]) -> Option<usize> {
+    let bend = |k: usize| {
+        let [before, after] = [values[k - 1], values[k + 1]].map(|beside| values[k] - beside);
+        if before * after > 0.0 {
+            0.5 * (before + after).abs()
+        } else {
+            0.0
+        }
+    };
+    let bends = (1..values.len().saturating_sub(1)).map(bend);
+    let (place, worst) = bends.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let mut sorted: Vec<f64> = changes.collect();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted[sorted.len() / 2];
+    let ends = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(0.0);
+    let span = ends(f64::max) - ends(f64::min);
+    (worst > ALONE[0] * usual && worst > ALONE[1] * span).then_some(place + 1)
 }
 
 /// `conversion = [low, high]`.

@@ -332,11 +332,14 @@ impl Columns {
 /// Refuses a mass that does not fall, or that rises by more than a share of its fall.
 fn falls(mass: &[f64], largest: f64) -> Result<(), (usize, String, String)> {
     let fall = mass[0] - mass.iter().copied().fold(f64::INFINITY, f64::min);
-    let (mut low, mut worst) = (mass[0], (0, 0.0));
+    let (mut low, mut worst, mut dip) = (0, (0, 0.0), 0);
     for (k, &m) in mass.iter().enumerate() {
-        low = low.min(m);
-        if m - low > worst.1 {
-            worst = (k, m - low);
+        if m < mass[low] {
+            low = k;
+        }
+        if m - mass[low] > worst.1 {
+            worst = (k, m - mass[low]);
+            dip = low;
         }
     }
     let percent = |share: f64| format!("{:.3}", 100.0 * share);
@@ -344,6 +347,19 @@ fn falls(mass: &[f64], largest: f64) -> Result<(), (usize, String, String)> {
         let fact = format!("the mass falls by {} % in all", percent(fall));
         let help = "a loss of mass is tuned: name the right column as `columns.mass`".into();
         return Err((mass.len() - 1, fact, help));
+    }
+    // A row that falls far below both beside it is what is wrong, not the rise after it.
+    let alone = dip > 0 && worst.0 > dip && {
+        let least = mass[dip - 1].min(mass[dip + 1]);
+        least - mass[dip] > 0.5 * worst.1
+    };
+    if worst.1 > largest * fall && alone {
+        let fact = format!(
+            "the mass is {} % of that at the start in this row alone, and {} % in the next",
+            percent(mass[dip]),
+            percent(mass[dip + 1])
+        );
+        return Err((dip, fact, "remove the row if the reading failed".into()));
     }
     if worst.1 > largest * fall {
         let fact = format!(
