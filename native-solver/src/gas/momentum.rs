@@ -17,6 +17,7 @@ use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::FaceCondition;
 use super::normal_friction::NormalFriction;
 use super::state::GasState;
+use super::tolerance;
 use super::turbulence::wall;
 use crate::numerics::convection::vector_beyond_upwind;
 use crate::numerics::gradient::{self, Beside};
@@ -24,7 +25,7 @@ use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, follow, interpolate};
-use crate::numerics::parallel::{fill, sums, update};
+use crate::numerics::parallel::{fill, largest, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// The predictor need not be solved closer than this share of its initial residual, because the
@@ -33,6 +34,8 @@ const PREDICTOR: f64 = 1e-3;
 /// Iterations of a predictor at most; it converges in a few, or the outer loop shows that it
 /// does not.
 const ITERATIONS: u32 = 200;
+/// Gas that moves by less than this share of a cell in a window counts as still.
+const STILL: f64 = 1e-5;
 
 /// Matrix and right-hand side, the pressure left out: (A + N) u = b − χ V ∇p.
 #[derive(Debug)]
@@ -56,6 +59,8 @@ pub struct Momentum {
     on_faces: Vec<Vec3>,
     /// Momentum that leaves the owner of each face in N, of what the equation takes explicitly.
     explicit: Vec<Vec3>,
+    /// Of each cell what its equation misses, and its terms, in N.
+    errors: Vec<[f64; 2]>,
 }
 
 /// Velocity of the gas at a boundary face, interstitial, where it is given.
@@ -132,6 +137,7 @@ impl Momentum {
             gradients: vec![Matrix3::zeros(); cells],
             on_faces: vec![Vec3::zeros(); faces],
             explicit: vec![Vec3::zeros(); faces],
+            errors: vec![[0.0; 2]; cells],
         }
     }
 
@@ -195,24 +201,37 @@ impl Momentum {
         });
     }
 
-    /// Σ over cells of |b − χ V ∇p − (A + N) u|, relative to the magnitudes of its terms.
-    pub fn residual(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
+    /// How far velocities and pressures are from solving the equation, the larger of two measures: Σ over cells of |b − χ V ∇p − (A + N) u|, relative to the
+    /// magnitudes of its terms; and by how much that moves the velocity of the worst cell, relative to the fastest gas, over [`tolerance::WORST`]: the
+    /// first hardly sees an error in few small cells.
+    pub fn residual(&mut self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
         let (grid, cells) = (frame.grid, self.source.len());
-        let parts = |cell: usize| {
+        let mut errors = std::mem::take(&mut self.errors);
+        fill(&mut errors, |cell| {
             let velocity = &now.velocity[cell];
             let own = self.matrix.diagonal()[cell] * velocity + self.normal.pull(cell, velocity);
             let push = frame.pressure_share[cell] * grid.volume[cell];
             let pressure = push * now.pressure_gradient[cell];
             let force = self.without_pressure(cell, &now.velocity);
-            (own, pressure, force)
-        };
-        let terms = |cell: usize| {
-            let (own, pressure, force) = parts(cell);
             let error = (force - pressure - own).norm();
             [error, own.norm() + pressure.norm() + force.norm()]
-        };
-        let [error, magnitude] = sums(cells, terms);
-        if error == 0.0 { 0.0 } else { error / magnitude }
+        });
+        // What moves gas by a hundred-thousandth of a cell.
+        let still = STILL / frame.motion_span;
+        let size = |cell: usize| grid.volume[cell].cbrt();
+        let [error, terms] = sums(cells, |cell| {
+            let [error, terms] = errors[cell];
+            let still = now.mass[cell] * still * size(cell) / frame.motion_span;
+            [error, terms + still]
+        });
+        let diagonal = self.matrix.diagonal();
+        let (_, fastest) = largest(cells, |cell| now.velocity[cell].norm_squared());
+        let fastest = fastest.sqrt();
+        let (_, worst) = largest(cells, |cell| {
+            errors[cell][0] / (diagonal[cell] * (fastest + still * size(cell)))
+        });
+        self.errors = errors;
+        (error / terms).max(worst / tolerance::WORST)
     }
 
     /// Right-hand side and neighbours' pull of a cell, without the pressure, in N.

@@ -16,6 +16,10 @@ const SHARE: f64 = 0.1;
 /// what a cell holds.
 const VOLUME: f64 = 1000.0;
 
+/// What momentum may move the velocity of any one cell by, relative to the fastest gas, in units of the outer tolerance: its residual is a mean over cells,
+/// which hardly sees few small ones.
+pub const WORST: f64 = 1000.0;
+
 /// When the solve of a scalar ends: where its residual is below either.
 #[derive(Clone, Copy, Debug)]
 pub struct ScalarTolerance {
