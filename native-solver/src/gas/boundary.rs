@@ -85,6 +85,17 @@ pub enum FaceCondition {
     },
 }
 
+impl FaceCondition {
+    /// Whether the velocity at the face is given; the cell's own counts there otherwise, of which walls without friction let the tangential part pass.
+    #[inline]
+    pub fn gives_velocity(&self) -> bool {
+        matches!(
+            self,
+            Self::Inlet { .. } | Self::Wall { sticks: Some(_), .. }
+        )
+    }
+}
+
 /// Heat through a wall at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeatCondition {

@@ -202,9 +202,14 @@ impl Momentum {
     }
 
     /// How far velocities and pressures are from solving the equation, the larger of two measures: Σ over cells of |b − χ V ∇p − (A + N) u|, relative to the
-    /// magnitudes of its terms; and by how much that moves the velocity of the worst cell, relative to the fastest gas, over [`tolerance::WORST`]: the
-    /// first hardly sees an error in few small cells.
-    pub fn residual(&mut self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
+    /// magnitudes of its terms; and by how much that, and what is `unsettled` in m/s, moves the velocity of the worst cell, relative to the fastest gas, over
+    /// [`tolerance::WORST`]: the first hardly sees an error in few small cells.
+    pub fn residual(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        now: &GasState,
+        unsettled: f64,
+    ) -> f64 {
         let (grid, cells) = (frame.grid, self.source.len());
         let mut errors = std::mem::take(&mut self.errors);
         fill(&mut errors, |cell| {
@@ -216,22 +221,19 @@ impl Momentum {
             let error = (force - pressure - own).norm();
             [error, own.norm() + pressure.norm() + force.norm()]
         });
-        // What moves gas by a hundred-thousandth of a cell.
         let still = STILL / frame.motion_span;
         let size = |cell: usize| grid.volume[cell].cbrt();
-        let [error, terms] = sums(cells, |cell| {
+        let [error, terms, length] = sums(cells, |cell| {
             let [error, terms] = errors[cell];
             let still = now.mass[cell] * still * size(cell) / frame.motion_span;
-            [error, terms + still]
+            [error, terms + still, size(cell)]
         });
         let diagonal = self.matrix.diagonal();
         let (_, fastest) = largest(cells, |cell| now.velocity[cell].norm_squared());
-        let fastest = fastest.sqrt();
-        let (_, worst) = largest(cells, |cell| {
-            errors[cell][0] / (diagonal[cell] * (fastest + still * size(cell)))
-        });
+        let fastest = fastest.sqrt() + still * length / cells as f64;
+        let (_, moved) = largest(cells, |cell| errors[cell][0] / diagonal[cell]);
         self.errors = errors;
-        (error / terms).max(worst / tolerance::WORST)
+        (error / terms).max((moved + unsettled) / (tolerance::WORST * fastest))
     }
 
     /// Right-hand side and neighbours' pull of a cell, without the pressure, in N.

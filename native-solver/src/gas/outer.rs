@@ -249,7 +249,8 @@ impl Equations {
         self.watch.lap(&mut self.phases.properties);
         let material = &self.material;
         self.momentum.assemble(frame, material, self.share, now);
-        let momentum = self.momentum.residual(frame, now);
+        let unsettled = self.pressure.unsettled(frame, material, now);
+        let momentum = self.momentum.residual(frame, now, unsettled);
         self.watch.lap(&mut self.phases.momentum);
         self.continuity = self.pressure.residual(frame, material, now);
         self.watch.lap(&mut self.phases.pressure);

@@ -36,7 +36,7 @@ use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::krylov::{Krylov, ROUND_OFF, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, outflow};
-use crate::numerics::parallel::{fill, sums};
+use crate::numerics::parallel::{fill, largest, sums};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// A correction need not be solved closer than this share of its initial residual: the next one
@@ -126,8 +126,10 @@ pub struct Pressure {
     corrections: u32,
     /// True where a sequence of corrections is to follow friction and what transport does at faces.
     follows: bool,
-    /// Memory for the next.
+    /// Memory for the next; after a correction, what carried pressures along faces in it.
     scratch: Vec<Vec3>,
+    /// True from a correction on until something else changes what it left.
+    corrected: bool,
 }
 
 impl Pressure {
@@ -161,6 +163,7 @@ impl Pressure {
             corrections: 0,
             follows: false,
             scratch: Vec::new(),
+            corrected: false,
         }
     }
 
@@ -174,6 +177,7 @@ impl Pressure {
 
     /// Pressures are carried along faces by this gradient.
     pub fn carry_by(&mut self, frame: &AttemptFrame<'_>, gradient: &[Vec3]) {
+        self.corrected = false;
         if !frame.grid.orthogonal {
             self.along.clear();
             self.along.extend_from_slice(gradient);
@@ -187,6 +191,7 @@ impl Pressure {
 
     /// The same, to change.
     pub fn along_mut(&mut self) -> &mut [Vec3] {
+        self.corrected = false;
         &mut self.along
     }
 
@@ -356,7 +361,41 @@ impl Pressure {
         self.update_slopes(&now.flux);
         self.update_along(frame, momentum);
         self.update_velocity(frame, momentum, now);
+        self.corrected = true;
         solved.iterations
+    }
+
+    /// By how much the velocity of the worst cell would change in m/s if fluxes and the mean of them took up what the last correction changed of two
+    /// gradients: that which carries pressures along faces, and that of mass velocities, by which faces differ from cells. Zero where lines
+    /// between centres are normal to faces. Neither momentum, whose pressure gradient is the one that leaves the mean, nor continuity sees it.
+    pub fn unsettled(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        now: &GasState,
+    ) -> f64 {
+        let grid = frame.grid;
+        if grid.orthogonal || !self.corrected {
+            return 0.0;
+        }
+        self.transport.update_reach(frame, material, now);
+        let (reach, last_reach) = (&self.transport.reach, &self.transport.last_reach);
+        let (along, last_along) = (&self.along, &self.scratch);
+        let mut missed = std::mem::take(&mut self.drive);
+        fill(&mut missed, |index| {
+            let face = &grid.faces[index];
+            let moved = displacement(grid, face, along) - displacement(grid, face, last_along);
+            self.conductance[index] * moved / face.area
+        });
+        let (_, worst) = largest(grid.cells(), |cell| {
+            let part = |index: usize, side: usize| {
+                missed[index] - (reach[index][side] - last_reach[index][side])
+            };
+            let held = material.density[cell] * frame.void_fraction[cell];
+            self.recovery.vector(grid, cell, part).norm() / held
+        });
+        self.drive = missed;
+        worst
     }
 
     /// Σ over openings of the flow in kg/s that the pressure there, linear in the flux, is off from that at the flux at

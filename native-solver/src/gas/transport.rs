@@ -42,6 +42,8 @@ pub struct FaceTransport {
     /// What ρ ε u has at each face beyond its owner's and its neighbour's, along its normal, by their gradients; in kg/m²/s.
     /// Empty where lines between centres are normal to faces.
     pub reach: Vec<[f64; 2]>,
+    /// The same before [`Self::update_reach`].
+    pub last_reach: Vec<[f64; 2]>,
     /// ρ ε u·n at each face: of the cells beside it, and on the boundary of the flux. Empty as `reach`.
     passing: Vec<f64>,
     /// What a cell's value would be of the values that the cells give on its faces, less its own.
@@ -59,6 +61,7 @@ impl FaceTransport {
             per_flux: vec![[0.0; 2]; cells],
             plain: Vec::new(),
             reach: Vec::new(),
+            last_reach: Vec::new(),
             passing: Vec::new(),
             bent: Vec::new(),
         }
@@ -74,11 +77,7 @@ impl FaceTransport {
         now: &GasState,
     ) {
         let grid = frame.grid;
-        fill(&mut self.mass_velocity, |cell| {
-            material.density[cell] * frame.void_fraction[cell] * now.velocity[cell]
-        });
-        let held = |cell: usize| material.density[cell] * frame.void_fraction[cell];
-        self.update_gradients(frame, held, &now.flux);
+        self.update_mass_velocity(frame, material, now);
         self.update_bent(frame, now, recovery);
         fill(&mut self.per_flux, |cell| {
             let density = material.density[cell];
@@ -112,6 +111,30 @@ impl FaceTransport {
                 per_flux(other, &face.normal) * (mean - there),
             ]
         });
+    }
+
+    /// The reach of the mass velocity at hand, beside which the last one is kept.
+    pub fn update_reach(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        now: &GasState,
+    ) {
+        self.last_reach.clone_from(&self.reach);
+        self.update_mass_velocity(frame, material, now);
+    }
+
+    fn update_mass_velocity(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        now: &GasState,
+    ) {
+        let held = |cell: usize| material.density[cell] * frame.void_fraction[cell];
+        fill(&mut self.mass_velocity, |cell| {
+            held(cell) * now.velocity[cell]
+        });
+        self.update_gradients(frame, held, &now.flux);
     }
 
     /// The reach of the old mass flux.
@@ -158,7 +181,8 @@ impl FaceTransport {
             }
         };
         gradient::vector(grid, mass_velocity, boundary, &mut self.gradients);
-        gradient::averaged(grid, &mut self.gradients, &mut self.plain);
+        let free = |index: usize| !frame.boundary.at(index).gives_velocity();
+        gradient::averaged(grid, &mut self.gradients, free, &mut self.plain);
         let gradients = &self.gradients;
         self.reach.resize(grid.faces.len(), [0.0; 2]);
         fill(&mut self.reach, |index| reach(grid, index, gradients));
