@@ -305,7 +305,7 @@ fn what_is_likely_not_meant_is_told() {
     let refused = told(CASE, &lost);
     assert!(
         refused.contains(
-            "line 57: the mass is 20.000 % of that at the start in this row alone, and 60.0"
+            "a.csv: the mass is 20.000 % of that at the start in this row alone, and 60.0"
         ),
         "{refused}"
     );

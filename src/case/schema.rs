@@ -310,7 +310,7 @@ mod tests {
         let meaning = density["description"].as_str().unwrap();
         assert_eq!(meaning, "Density. (density, kg/m^3)");
         let iterations = at(&schema, "gas.controls.outer_iterations");
-        assert_eq!(iterations["default"], 20);
+        assert_eq!(iterations["default"], 30);
         assert_eq!(
             [&iterations["minimum"], &iterations["maximum"]],
             [1, 10_000]

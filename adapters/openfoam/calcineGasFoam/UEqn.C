@@ -13,20 +13,6 @@
 #include "fvm.H"
 #include "fvc.H"
 
-namespace
-{
-
-using namespace Foam;
-
-// What momentum may move the velocity of any one cell by, relative to the fastest gas, in units of the outer tolerance (as native-solver/src/gas/tolerance.rs).
-const scalar worstCell_ = 1000;
-
-// Gas that moves by less than this share of a cell in a window counts as still.
-const scalar still_ = 1e-5;
-
-} // End anonymous namespace
-
-
 Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, report& result)
 {
     const scalarField& volume = mesh_.cellVolumes();
@@ -104,11 +90,10 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     // What the equation misses, as a share of its terms, and by how much that moves the velocity of the worst cell, relative to the fastest gas: the
     // first is a mean over cells, which hardly sees few small ones. Gas that moves by less than a hundred-thousandth of a cell is still.
     const scalarField missed(mag(pull + push - own));
-    const scalarField still((still_/window_.motionSpan)*Foam::cbrt(volume));
-    const scalar terms = gSumMag(own) + gSumMag(push) + gSumMag(pull) + gSum(mass_*still)/window_.motionSpan;
-    const scalar fastest = gMax(mag(U_.primitiveField()));
-    const scalar worst = gMax(missed/(momentumDiagonal_*volume*(fastest + still)));
-    const scalar error = max(gSum(missed)/terms, worst/worstCell_);
+    const scalar still = tolerances::still*gSum(mass_*Foam::cbrt(volume))/sqr(window_.motionSpan);
+    const scalar terms = gSumMag(own) + gSumMag(push) + gSumMag(pull) + still;
+    const scalar worst = gMax(missed/(momentumDiagonal_*volume))/fastest();
+    const scalar error = max(gSum(missed)/terms, worst/tolerances::worst);
 
     const vectorField source(matrix.source() + push);
     setNormalFriction(matrix, true);

@@ -306,5 +306,51 @@ void Foam::calcine::gas::updatePressureAlong(bool first)
     (
         first ? min(withoutFriction_, followed)() : tmp<scalarField>::New(mesh_.nCells(), followed)()
     );
-    pressureAlong_ += share*(next - pressureAlong_);
+    alongChange_ = share*(next - pressureAlong_);
+    pressureAlong_ += alongChange_;
+}
+
+
+Foam::scalar Foam::calcine::gas::unsettled(const scalarField& density) const
+{
+    if (!oblique_)
+    {
+        return 0;
+    }
+    const scalarField held(density*given_.voidFraction);
+    const tensorField change(massVelocityGradient(held*U_.primitiveField(), held, flux_) - massGradient_);
+    const vectorField alongBeyond(shared_.beyond(alongChange_));
+    vectorField missed(mesh_.nCells(), Zero);
+    const auto add = [&](label facei, label celli, scalar distance, scalar flux)
+    {
+        if (turns_[facei])
+        {
+            return;
+        }
+        const scalar area = mag(mesh_.faceAreas()[facei]);
+        missed[celli] += area*distance*(flux/area - reach(facei, celli, change))*normal_[facei];
+    };
+    forAll(flux_, facei)
+    {
+        const label P = mesh_.faceOwner()[facei];
+        scalar push = ownerSkew_[facei] & alongChange_[P];
+        if (shared_.within(facei))
+        {
+            push += neighbourSkew_[facei] & alongBeyond[facei];
+        }
+        const scalar flux = conductance_[facei]*push;
+        add(facei, P, ownerDistance_[facei], flux);
+        if (facei < mesh_.nInternalFaces())
+        {
+            add(facei, mesh_.faceNeighbour()[facei], neighbourDistance_[facei], flux);
+        }
+    }
+    return gMax(mag(recovery_ & (missed/mesh_.cellVolumes()))/held)/fastest();
+}
+
+
+Foam::scalar Foam::calcine::gas::fastest() const
+{
+    const scalar size = gSum(Foam::cbrt(mesh_.cellVolumes()))/returnReduce(mesh_.nCells(), sumOp<label>());
+    return gMax(mag(U_.primitiveField())) + tolerances::still*size/window_.motionSpan;
 }

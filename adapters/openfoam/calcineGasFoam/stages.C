@@ -109,6 +109,7 @@ void Foam::calcine::gas::step(report& result)
     {
         U_.primitiveFieldRef(), pressureGradient_, pressureAlong_, p_.primitiveFieldRef(), flux_
     };
+    scalar settling = 0;
     for (label outer = 1; outer <= max(outer_.iterations, 1); ++outer)
     {
         // The switching of limiters may otherwise lead from one iterate to another and back for ever.
@@ -123,7 +124,7 @@ void Foam::calcine::gas::step(report& result)
         }
         result.residual = predictVelocity(rho, result);
         result.residual = max(result.residual, assemblePressure(rho, outer == 1));
-        if (pace.judge(outer - 1, result.residual))
+        if (pace.judge(outer - 1, max(result.residual, settling)))
         {
             iterates.forget();
         }
@@ -145,6 +146,8 @@ void Foam::calcine::gas::step(report& result)
         }
         mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();
+        settling = unsettled(rho)/tolerances::worst;
+        result.residual = max(result.residual, settling);
         result.residual = max(result.residual, solveScalars(result.residual, result));
         guard(true);
         result.outerIterations = outer;

@@ -104,8 +104,8 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 }
 
 
-// Half of each cell's gradient and half of the mean of those of the cells beside it, which keeps what is fed back bounded on tetrahedra (native
-// gas, docs/theory.md).
+// Of each cell's gradient a share is the mean of those of the cells beside it, half or, at faces where a cell's own value and no given one counts, more:
+// that keeps what is fed back bounded on tetrahedra (native-solver/src/numerics/gradient.rs, docs/theory.md).
 Foam::tensorField Foam::calcine::gas::besideToo(const tensorField& gradient) const
 {
     const tensorField beyond(shared_.beyond(gradient));
@@ -127,12 +127,26 @@ Foam::tensorField Foam::calcine::gas::besideToo(const tensorField& gradient) con
             count[N] += 1;
         }
     }
+    vectorField oneSided(mesh_.nCells(), Zero);
+    forAll(mesh_.boundary(), patchi)
+    {
+        const fvPatch& patch = mesh_.boundary()[patchi];
+        if (boundary_.of(patchi) == passage::within || U_.boundaryField()[patchi].fixesValue())
+        {
+            continue;
+        }
+        forAll(patch, i)
+        {
+            oneSided[patch.faceCells()[i]] += normal_[patch.start() + i];
+        }
+    }
     tensorField mixed(gradient);
     forAll(mixed, celli)
     {
         if (count[celli] > 0)
         {
-            mixed[celli] = 0.5*gradient[celli] + (0.5/count[celli])*sum[celli];
+            const scalar share = min(0.5 + 0.25*magSqr(oneSided[celli]), scalar(1));
+            mixed[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
         }
     }
     return mixed;
