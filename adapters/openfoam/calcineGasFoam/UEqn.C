@@ -20,7 +20,11 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     const scalarField inertia(committed_.mass/window_.motionSpan);
     const volScalarField mu("mu", viscosity());
     const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(mu));
-    const volTensorField gradU("gradU", fvc::grad(U_));
+    volTensorField gradU("gradU", fvc::grad(U_));
+    if (oblique_)
+    {
+        gradU.primitiveFieldRef() = besideToo(gradU.primitiveField(), 0, 0.5);
+    }
 
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
@@ -90,7 +94,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     // What the equation misses, as a share of its terms, and by how much that moves the velocity of the worst cell, relative to the fastest gas: the
     // first is a mean over cells, which hardly sees few small ones. Gas that moves by less than a hundred-thousandth of a cell is still.
     const scalarField missed(mag(pull + push - own));
-    const scalar still = tolerances::still*gSum(mass_*Foam::cbrt(volume))/sqr(window_.motionSpan);
+    const scalar still = tolerances::still/window_.motionSpan*gSum(momentumDiagonal_*volume*Foam::cbrt(volume));
     const scalar terms = gSumMag(own) + gSumMag(push) + gSumMag(pull) + still;
     const scalar worst = gMax(missed/(momentumDiagonal_*volume))/fastest();
     const scalar error = max(gSum(missed)/terms, worst/tolerances::worst);

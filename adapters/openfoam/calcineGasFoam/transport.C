@@ -104,9 +104,14 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 }
 
 
-// Of each cell's gradient a share is the mean of those of the cells beside it, half or, at faces where a cell's own value and no given one counts, more:
-// that keeps what is fed back bounded on tetrahedra (native-solver/src/numerics/gradient.rs, docs/theory.md).
-Foam::tensorField Foam::calcine::gas::besideToo(const tensorField& gradient) const
+// Of each cell's gradient a share is the mean of those of the cells beside it: one `everywhere`, and more at faces where a cell's own value and no given one
+// counts, by `free` times |sum n|^2 of them. That keeps what is fed back bounded on tetrahedra (native-solver/src/numerics/gradient.rs, docs/theory.md).
+Foam::tensorField Foam::calcine::gas::besideToo
+(
+    const tensorField& gradient,
+    scalar everywhere,
+    scalar free
+) const
 {
     const tensorField beyond(shared_.beyond(gradient));
     tensorField sum(mesh_.nCells(), Zero);
@@ -145,7 +150,7 @@ Foam::tensorField Foam::calcine::gas::besideToo(const tensorField& gradient) con
     {
         if (count[celli] > 0)
         {
-            const scalar share = min(0.5 + 0.25*magSqr(oneSided[celli]), scalar(1));
+            const scalar share = min(everywhere + free*magSqr(oneSided[celli]), scalar(1));
             mixed[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
         }
     }
@@ -221,7 +226,7 @@ Foam::tensorField Foam::calcine::gas::obliqueGradient
     {
         sum[celli] = inv(ways[celli]) & sum[celli];
     }
-    return besideToo(sum);
+    return besideToo(sum, 0.5, 0.25);
 }
 
 

@@ -11,6 +11,8 @@ use calcine_coupler::setup::{
 };
 
 use super::error::NativeError;
+use crate::numerics::gradient::FreeCells;
+use crate::numerics::grid::MeshGraph;
 use crate::numerics::parallel::sums;
 
 /// Slope of a wall's velocity against the wall that counts as round-off.
@@ -91,7 +93,11 @@ impl FaceCondition {
     pub fn gives_velocity(&self) -> bool {
         matches!(
             self,
-            Self::Inlet { .. } | Self::Wall { sticks: Some(_), .. }
+            Self::Inlet { .. }
+                | Self::Wall {
+                    sticks: Some(_),
+                    ..
+                }
         )
     }
 }
@@ -281,6 +287,11 @@ impl Boundaries {
     #[inline]
     pub fn at(&self, face: usize) -> &FaceCondition {
         self.patches[self.patch_of[face - self.internal] as usize].at(face)
+    }
+
+    /// The cells behind outlets, walls without friction and planes of symmetry, which stay what they are.
+    pub fn free_cells(&self, grid: &MeshGraph) -> FreeCells {
+        FreeCells::find(grid, |face| !self.at(face).gives_velocity())
     }
 
     /// Sums over the faces of each patch of the mesh; 0 of periodic ones and those without faces.

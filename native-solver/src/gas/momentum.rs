@@ -20,7 +20,7 @@ use super::state::GasState;
 use super::tolerance;
 use super::turbulence::wall;
 use crate::numerics::convection::vector_beyond_upwind;
-use crate::numerics::gradient::{self, Beside};
+use crate::numerics::gradient::{self, Beside, FreeCells};
 use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
@@ -59,6 +59,7 @@ pub struct Momentum {
     on_faces: Vec<Vec3>,
     /// Momentum that leaves the owner of each face in N, of what the equation takes explicitly.
     explicit: Vec<Vec3>,
+    free: Option<FreeCells>,
     /// Of each cell what its equation misses, and its terms, in N.
     errors: Vec<[f64; 2]>,
 }
@@ -137,6 +138,7 @@ impl Momentum {
             gradients: vec![Matrix3::zeros(); cells],
             on_faces: vec![Vec3::zeros(); faces],
             explicit: vec![Vec3::zeros(); faces],
+            free: None,
             errors: vec![[0.0; 2]; cells],
         }
     }
@@ -204,12 +206,7 @@ impl Momentum {
     /// How far velocities and pressures are from solving the equation, the larger of two measures: Σ over cells of |b − χ V ∇p − (A + N) u|, relative to the
     /// magnitudes of its terms; and by how much that, and what is `unsettled` in m/s, moves the velocity of the worst cell, relative to the fastest gas, over
     /// [`tolerance::WORST`]: the first hardly sees an error in few small cells.
-    pub fn residual(
-        &mut self,
-        frame: &AttemptFrame<'_>,
-        now: &GasState,
-        unsettled: f64,
-    ) -> f64 {
+    pub fn residual(&mut self, frame: &AttemptFrame<'_>, now: &GasState, unsettled: f64) -> f64 {
         let (grid, cells) = (frame.grid, self.source.len());
         let mut errors = std::mem::take(&mut self.errors);
         fill(&mut errors, |cell| {
@@ -223,12 +220,11 @@ impl Momentum {
         });
         let still = STILL / frame.motion_span;
         let size = |cell: usize| grid.volume[cell].cbrt();
+        let diagonal = self.matrix.diagonal();
         let [error, terms, length] = sums(cells, |cell| {
             let [error, terms] = errors[cell];
-            let still = now.mass[cell] * still * size(cell) / frame.motion_span;
-            [error, terms + still, size(cell)]
+            [error, terms + diagonal[cell] * still * size(cell), size(cell)]
         });
-        let diagonal = self.matrix.diagonal();
         let (_, fastest) = largest(cells, |cell| now.velocity[cell].norm_squared());
         let fastest = fastest.sqrt() + still * length / cells as f64;
         let (_, moved) = largest(cells, |cell| errors[cell][0] / diagonal[cell]);
@@ -354,6 +350,10 @@ impl Momentum {
             _ => Beside::AtFace(face_velocity(frame, index, &grid.faces[index], velocity)),
         };
         gradient::vector(grid, velocity, boundary, &mut self.gradients);
+        let free = self
+            .free
+            .get_or_insert_with(|| frame.boundary.free_cells(grid));
+        free.mix(grid, &mut self.gradients);
     }
 
     fn update_explicit(

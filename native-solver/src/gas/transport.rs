@@ -20,7 +20,7 @@ use super::attempt::{AttemptFrame, CellProperties};
 use super::momentum::{Momentum, given_velocity, tensors};
 use super::recovery::{Recovery, reach};
 use super::state::GasState;
-use crate::numerics::gradient::{self, Beside};
+use crate::numerics::gradient::{self, Beside, FreeCells};
 use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::parallel::fill;
 
@@ -37,6 +37,7 @@ pub struct FaceTransport {
     on_faces: Vec<Vec3>,
     /// a_t of each cell in kg/s, and 1/(ρ ε χ V) in 1/kg.
     per_flux: Vec<[f64; 2]>,
+    free: Option<FreeCells>,
     /// Memory for gradients without those of the cells beside.
     plain: Vec<Matrix3<f64>>,
     /// What ρ ε u has at each face beyond its owner's and its neighbour's, along its normal, by their gradients; in kg/m²/s.
@@ -59,6 +60,7 @@ impl FaceTransport {
             gradients: vec![Matrix3::zeros(); cells],
             on_faces: vec![Vec3::zeros(); faces],
             per_flux: vec![[0.0; 2]; cells],
+            free: None,
             plain: Vec::new(),
             reach: Vec::new(),
             last_reach: Vec::new(),
@@ -181,7 +183,9 @@ impl FaceTransport {
             }
         };
         gradient::vector(grid, mass_velocity, boundary, &mut self.gradients);
-        let free = |index: usize| !frame.boundary.at(index).gives_velocity();
+        let free = self
+            .free
+            .get_or_insert_with(|| frame.boundary.free_cells(grid));
         gradient::averaged(grid, &mut self.gradients, free, &mut self.plain);
         let gradients = &self.gradients;
         self.reach.resize(grid.faces.len(), [0.0; 2]);
