@@ -1,6 +1,7 @@
 //! Flow, heat and balances of calcineGasFoam against exact solutions (verification).
 
 use calcine_coupler::conformance::manufactured::prisms::prism_box;
+use calcine_coupler::conformance::manufactured::tetrahedra::tetrahedron_box;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{Balance, Bed, Gas, Part};
@@ -233,6 +234,46 @@ fn a_viscous_fluid_passes_thin_prisms_as_natively() {
         (fastest / FASTEST_OF_THIN_PRISMS - 1.0).abs() < 1e-5,
         "{fastest}"
     );
+}
+
+/// The graded tetrahedra of `native-solver/tests/stretched.rs`: uniform from rest, those at edges of walls without friction and of the outlet too.
+#[test]
+fn a_flow_between_walls_without_friction_is_uniform_in_every_tetrahedron() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = BoxSpec {
+        origin: Vec3::zeros(),
+        size: Vec3::new(1.0, 0.6, 0.5),
+        cells: [8, 6, 5],
+        patches: ["bottom", "top", "side", "side", "side", "side"].map(str::to_owned),
+    };
+    let graded = |point: Vec3| {
+        let y = point.y / 0.6;
+        Vec3::new(point.x, 0.6 * (0.5 * y + 0.5 * y * y), point.z)
+    };
+    let tetrahedra = tetrahedron_box(&spec, graded).unwrap();
+    let cells = tetrahedra.cells();
+    let mut thin = setup();
+    thin.velocity = Vec3::zeros();
+    thin.properties = GasModel::Constant(ConstantGas {
+        density: 1.0,
+        heat_capacity: 1000.0,
+        viscosity: 1e-4,
+        conductivity: 1.0,
+    });
+    thin.controls.outer_iterations = 30;
+    thin.controls.outer_tolerance = 1e-6;
+    for (name, patch) in &mut thin.patches {
+        if name == "bottom" {
+            *patch = GasPatch::inlet(Schedule::constant(1.0), Schedule::constant(TEMPERATURE));
+        }
+    }
+    let mut duct = Duct::launch_on(tetrahedra, &thin, folder.path());
+    fastest_after(&mut duct, (4, 0.02), cells);
+    let velocities = duct.gas.fields().velocity.iter();
+    let worst = velocities
+        .map(|u| (u - Vec3::x()).norm())
+        .fold(0.0, f64::max);
+    assert!(worst < 2e-3, "{worst} m/s");
 }
 
 /// In m/s (`native-solver/tests/stretched.rs`).

@@ -223,7 +223,11 @@ impl Momentum {
         let diagonal = self.matrix.diagonal();
         let [error, terms, length] = sums(cells, |cell| {
             let [error, terms] = errors[cell];
-            [error, terms + diagonal[cell] * still * size(cell), size(cell)]
+            [
+                error,
+                terms + diagonal[cell] * still * size(cell),
+                size(cell),
+            ]
         });
         let (_, fastest) = largest(cells, |cell| now.velocity[cell].norm_squared());
         let fastest = fastest.sqrt() + still * length / cells as f64;

@@ -106,7 +106,7 @@ fn patch_of(side: u32) -> usize {
 }
 
 /// Kuhn's six tetrahedra of each hexahedron, whose faces match across all.
-fn tetrahedra([nx, ny, nz]: [usize; 3]) -> Vec<[u32; 4]> {
+pub(super) fn tetrahedra([nx, ny, nz]: [usize; 3]) -> Vec<[u32; 4]> {
     let orders = [
         [0, 1, 2],
         [0, 2, 1],
@@ -135,7 +135,7 @@ fn tetrahedra([nx, ny, nz]: [usize; 3]) -> Vec<[u32; 4]> {
     cells
 }
 
-fn mean(points: &[Vec3], indices: &[u32]) -> Vec3 {
+pub(super) fn mean(points: &[Vec3], indices: &[u32]) -> Vec3 {
     indices
         .iter()
         .map(|&index| points[index as usize])
@@ -144,7 +144,7 @@ fn mean(points: &[Vec3], indices: &[u32]) -> Vec3 {
 }
 
 /// Triangles of tetrahedra by their points, each with the cells on its sides.
-fn triangles(cells: &[[u32; 4]]) -> BTreeMap<[u32; 3], Vec<u32>> {
+pub(super) fn triangles(cells: &[[u32; 4]]) -> BTreeMap<[u32; 3], Vec<u32>> {
     let mut triangles: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
     for (index, cell) in cells.iter().enumerate() {
         for left in 0..4 {

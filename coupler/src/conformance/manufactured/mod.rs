@@ -7,6 +7,7 @@
 pub mod meshes;
 pub mod prisms;
 pub mod solution;
+pub mod tetrahedra;
 
 use std::sync::Arc;
 
