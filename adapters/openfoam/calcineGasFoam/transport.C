@@ -104,8 +104,8 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 }
 
 
-// Of each cell's gradient a share is the mean of those of the cells beside it: one `everywhere`, and more at faces where a cell's own value and no given one
-// counts, by `free` times |sum n|^2 of them. That keeps what is fed back bounded on tetrahedra (native-solver/src/numerics/gradient.rs, docs/theory.md).
+// Of each cell's gradient a share is the mean of those of the cells beside it: one `everywhere`, and more at faces along which
+// gas slips, by `free` times |sum n|^2 of them. That keeps what is fed back bounded on tetrahedra (native-solver/src/numerics/gradient.rs, docs/theory.md).
 Foam::tensorField Foam::calcine::gas::besideToo
 (
     const tensorField& gradient,
@@ -132,7 +132,9 @@ Foam::tensorField Foam::calcine::gas::besideToo
             count[N] += 1;
         }
     }
+    // Outlets count only beside faces along which gas slips.
     vectorField oneSided(mesh_.nCells(), Zero);
+    boolList slipping(mesh_.nCells(), false);
     forAll(mesh_.boundary(), patchi)
     {
         const fvPatch& patch = mesh_.boundary()[patchi];
@@ -143,6 +145,10 @@ Foam::tensorField Foam::calcine::gas::besideToo
         forAll(patch, i)
         {
             oneSided[patch.faceCells()[i]] += normal_[patch.start() + i];
+            if (slips(patchi))
+            {
+                slipping[patch.faceCells()[i]] = true;
+            }
         }
     }
     tensorField mixed(gradient);
@@ -150,7 +156,8 @@ Foam::tensorField Foam::calcine::gas::besideToo
     {
         if (count[celli] > 0)
         {
-            const scalar share = min(everywhere + free*magSqr(oneSided[celli]), scalar(1));
+            const scalar more = slipping[celli] ? free*magSqr(oneSided[celli]) : 0;
+            const scalar share = min(everywhere + more, scalar(1));
             mixed[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
         }
     }

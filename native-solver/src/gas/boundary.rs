@@ -87,21 +87,6 @@ pub enum FaceCondition {
     },
 }
 
-impl FaceCondition {
-    /// Whether the velocity at the face is given; the cell's own counts there otherwise, of which walls without friction let the tangential part pass.
-    #[inline]
-    pub fn gives_velocity(&self) -> bool {
-        matches!(
-            self,
-            Self::Inlet { .. }
-                | Self::Wall {
-                    sticks: Some(_),
-                    ..
-                }
-        )
-    }
-}
-
 /// Heat through a wall at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeatCondition {
@@ -289,9 +274,11 @@ impl Boundaries {
         self.patches[self.patch_of[face - self.internal] as usize].at(face)
     }
 
-    /// The cells behind outlets, walls without friction and planes of symmetry, which stay what they are.
+    /// The cells behind walls without friction and planes of symmetry, which stay what they are; outlets count with them.
     pub fn free_cells(&self, grid: &MeshGraph) -> FreeCells {
-        FreeCells::find(grid, |face| !self.at(face).gives_velocity())
+        let slips = |face: usize| matches!(self.at(face), FaceCondition::Wall { sticks: None, .. });
+        let opens = |face: usize| matches!(self.at(face), FaceCondition::Outlet { .. });
+        FreeCells::find(grid, slips, opens)
     }
 
     /// Sums over the faces of each patch of the mesh; 0 of periodic ones and those without faces.
