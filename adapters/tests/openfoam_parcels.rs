@@ -357,8 +357,8 @@ fn a_run_goes_on_from_a_checkpoint_to_the_same_bits() {
     ] {
         let parcels = crowded(&mesh, |rules| rules.packing = packing);
         let kept = folder.path().join(format!("{name}-kept"));
-        let mut places = ["whole", "resumed", "never"]
-            .map(|one| folder.path().join(format!("{name}-{one}")));
+        let mut places =
+            ["whole", "resumed", "never"].map(|one| folder.path().join(format!("{name}-{one}")));
         places
             .iter_mut()
             .for_each(|one| std::fs::create_dir(one).unwrap());

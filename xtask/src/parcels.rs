@@ -88,7 +88,7 @@ fn drums(workspace: &Workspace) -> TaskResult<Table> {
     Ok(table)
 }
 
-/// The shipped drum, so many times as wide, with cells and parcels of the same size; wood that gives off volatiles from the start.
+/// The shipped drum, so many times as wide, with cells and parcels of the same size.
 fn drum(wide: u32, layers: u32) -> Vec<String> {
     let cells = 10 * wide;
     // Layers of 8.33 mm, as three of 25 mm; parcels 4.2 mm apart across and 4 mm along.
@@ -105,8 +105,6 @@ fn drum(wide: u32, layers: u32) -> Vec<String> {
             r#"particles[0].place.grid={{ first = "{first} {} 2.5 mm", spacing = "4.2 4.2 4 mm", counts = [{rows}, {columns}, {along}] }}"#,
             -21 * i64::from(wide)
         ),
-        "reactions.volatiles.rate.factor=2.58e22".into(),
-        "particles.chips.temperature=360 K".into(),
         format!("time.end={} ms", 2 * WINDOWS),
         format!("output.every={} ms", 2 * WINDOWS),
         format!("output.series_every={} ms", 2 * WINDOWS),
