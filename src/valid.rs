@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::assembly::{
     AssemblyError, GasBackend, Pairing, PreparedCase, check_for_liggghts,
-    check_for_openfoam_parcels, native_parts, write_inputs,
+    check_for_openfoam_parcels, native_parts, pairing_cautions, write_inputs,
 };
 use crate::case::model::Case;
 use crate::case::packed::BedPacking;
@@ -78,6 +78,12 @@ impl ValidCase {
             prepared,
             packing,
         })
+    }
+
+    /// Adds to the warnings about the case what is to be warned of because of the solvers of a pairing.
+    pub fn warn_of(&mut self, pairing: Pairing) {
+        let more = pairing_cautions(&self.case, &self.prepared, pairing);
+        self.case.warnings.extend(more);
     }
 
     /// The case in words: clocks, sizes, the flow, and whether LIGGGHTS and OpenFOAM can move its particles.

@@ -80,6 +80,7 @@ mod sweeps;
 mod test_programs;
 mod time_splitting;
 mod told;
+mod tracer;
 mod tuning;
 mod vacuum;
 mod verification_beds;

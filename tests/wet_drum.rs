@@ -7,7 +7,7 @@ use std::path::Path;
 
 use calcine::results::Summary;
 
-use crate::support::{killed, program, results_equal};
+use crate::support::{killed, program, results_equal, stopped};
 
 /// Wood that gives off volatiles from the start: drying and charring at once, in the little time of a test.
 const AT_ONCE: [&str; 4] = [
@@ -82,4 +82,37 @@ fn a_turning_drum_of_wet_parcels_has_the_same_bits_on_one_thread_and_on_two() {
     });
     let differing = results_equal::differences(&runs[0], &runs[1]);
     assert!(differing.is_empty(), "{differing:?}");
+}
+
+/// `cargo xtask validate drum-restarts` interrupts it 50 times.
+#[test]
+fn a_turning_drum_that_is_interrupted_again_and_again_on_one_and_two_threads_has_the_bits_of_one_that_is_not()
+ {
+    let folder = tempfile::tempdir().unwrap();
+    let case = program::shipped("wet-drum");
+    for (gas, end, growths) in [
+        ("native", "0.1 s", &[1, 4, 2, 7, 1, 3, 5][..]),
+        ("openfoam", "40 ms", &[3, 5][..]),
+    ] {
+        let settings = [
+            AT_ONCE[1],
+            AT_ONCE[2],
+            "output.series_every=2 ms",
+            "output.every=20 ms",
+            &format!("time.end={end}"),
+        ];
+        let command = |out: &Path, threads: &str| {
+            let words = ["--gas", gas, "--threads", threads];
+            program::command(&case, out, &words, &settings)
+        };
+        let [whole, out] = ["whole", "stopped"].map(|name| folder.path().join(gas).join(name));
+        std::fs::create_dir(folder.path().join(gas)).unwrap();
+        stopped::finish(command(&whole, "1"));
+        let threads = |stretch: usize| ["2", "1"][stretch % 2];
+        let left =
+            stopped::interrupt_often(|stretch| command(&out, threads(stretch)), &out, growths);
+        assert_eq!(left, growths.len(), "{gas}");
+        let differing = results_equal::values_that_differ(&whole, &out);
+        assert!(differing.is_empty(), "{gas}: {differing:?}");
+    }
 }

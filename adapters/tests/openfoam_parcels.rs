@@ -358,7 +358,7 @@ fn a_run_goes_on_from_a_checkpoint_to_the_same_bits() {
         let parcels = crowded(&mesh, |rules| rules.packing = packing);
         let kept = folder.path().join(format!("{name}-kept"));
         let mut places =
-            ["whole", "resumed"].map(|one| folder.path().join(format!("{name}-{one}")));
+            ["whole", "resumed", "never"].map(|one| folder.path().join(format!("{name}-{one}")));
         places
             .iter_mut()
             .for_each(|one| std::fs::create_dir(one).unwrap());
@@ -376,6 +376,12 @@ fn a_run_goes_on_from_a_checkpoint_to_the_same_bits() {
             cloud.run(5, 2e-3);
         }
         assert!(whole.bits() == resumed.bits(), "{name}: ten windows later");
+        let mut never = Cloud::new(&mesh, &parcels, &places[2]);
+        never.run(10, 2e-3);
+        assert!(
+            whole.bits() == never.bits(),
+            "{name}: without any checkpoint"
+        );
     }
 }
 

@@ -29,6 +29,8 @@ pub struct Feed {
     pub zone: Zone,
     /// Mass flow in kg/s of process time.
     pub rate: f64,
+    /// Process times in s at which that flow begins and ends.
+    pub period: [f64; 2],
     /// Mass in kg that is there for the first window, as far as it finds room.
     pub batch: f64,
     /// Their diameters.
@@ -95,10 +97,23 @@ pub struct PopulationChange {
 pub struct WindowSpan {
     /// Windows before this one.
     pub window: u64,
+    /// Process time in s at which it begins.
+    pub start: f64,
     /// Its process span in s.
     pub span: f64,
     /// Its acceleration factor.
     pub acceleration: f64,
+}
+
+impl WindowSpan {
+    /// How much of it in s lies between two process times in s.
+    fn within(&self, [begin, end]: [f64; 2]) -> f64 {
+        if begin <= self.start && self.start + self.span <= end {
+            return self.span;
+        }
+        let end = end.min(self.start + self.span);
+        (end - begin.max(self.start)).max(0.0)
+    }
 }
 
 impl Feed {
@@ -230,7 +245,7 @@ impl FeedsAndOutlets {
         let mut gone = vec![false; particles.len()];
         due.rows.iter().for_each(|&row| gone[row] = true);
         for (index, feed) in self.feeds.iter().enumerate() {
-            self.due[0][index] += feed.rate * moment.span;
+            self.due[0][index] += feed.rate * moment.within(feed.period);
             loop {
                 let number = self.drawn[index];
                 let (radius, mass) = feed.particle(number)?;
@@ -416,6 +431,7 @@ mod tests {
                 high: Vec3::new(0.1, 0.1, 0.1),
             },
             rate,
+            period: [0.0, f64::INFINITY],
             batch,
             sizes: Sizes::Equal(0.01),
             density: 2000.0,
@@ -429,6 +445,7 @@ mod tests {
     fn moment(window: u64) -> WindowSpan {
         WindowSpan {
             window,
+            start: 0.01 * window as f64,
             span: 0.01,
             acceleration: 5.0,
         }

@@ -267,6 +267,39 @@ fn a_suspension_settles_with_both_fronts_of_kinematic_waves_into_a_bed_of_close_
     }
 }
 
+#[test]
+fn an_explicit_stress_carries_a_bed_at_rest_as_the_implicit_one_does() {
+    let mesh = named_box([0.02, 0.02, 0.1], [4, 4, 20], SIDES);
+    let explicit = ParcelPacking::Explicit {
+        stress: STRESS,
+        restitution: 0.9,
+    };
+    let heights = [ParcelPacking::Implicit(STRESS), explicit].map(|packing| {
+        let mut rules = motion(&mesh, 0.5, 0.2);
+        rules.gravity = Vec3::z() * -9.81;
+        rules.packing = packing;
+        rules.collisions = collisions(0.8, true, false);
+        let mut bed = cloud(&mesh, rules, (6000, 0.2), |_| Vec3::zeros());
+        let mut push = ParticlePush {
+            force: vec![Vec3::zeros(); 6000],
+            ..ParticlePush::default()
+        };
+        let coefficient = bed.parcels.fields().mass.iter().map(|mass| 20.0 * mass);
+        push.columns.set(DRAG_COEFFICIENT, 1, coefficient.collect());
+        push.columns.set(GAS_VELOCITY, 3, vec![0.0; 3 * 6000]);
+        (0..500).for_each(|_| bed.window(1e-3, &push));
+        let fraction = bed.parcels.solid_fraction();
+        let most = fraction.into_iter().fold(0.0, f64::max);
+        let places = bed.parcels.fields().position.iter();
+        let height = places.map(|place| place.z).sum::<f64>() / 6000.0;
+        println!("{:.2} mm, at most {most:.4}", 1e3 * height);
+        (height, most)
+    });
+    let [(implicit, _), (explicit, most)] = heights;
+    assert!((explicit / implicit - 1.0).abs() < 0.03, "{heights:?}");
+    assert!(most < 1.03 * STRESS.close_packing, "{heights:?}");
+}
+
 /// Variance of the velocities along each axis in m²/s², and the mean speed about the mean.
 fn spread(bed: &ParcelBed) -> (Vec3, f64) {
     let velocity = bed.parcels.fields().velocity;

@@ -1,5 +1,6 @@
 //! The only place that knows every backend: from a checked case to a run that is ready to go.
 
+mod cautions;
 mod error;
 mod interior;
 mod pairing;
@@ -14,6 +15,7 @@ use calcine_coupler::bodies::HeatBodies;
 use calcine_coupler::coordinator::{CheckpointPaths, CoupledRun, RunParts};
 use calcine_coupler::supervisor::Supervisor;
 
+pub use cautions::pairing_cautions;
 pub use error::AssemblyError;
 pub use interior::{ModelFactory, chemistry};
 pub use pairing::{GasBackend, Pairing, ParticleBackend};

@@ -77,6 +77,7 @@ fn feeds_and_outlets(case: &Case, prepared: &PreparedCase) -> FeedsAndOutlets {
             population: u32::try_from(feed.population).unwrap_or(u32::MAX),
             zone: feed.zone,
             rate: feed.rate,
+            period: feed.period,
             batch: feed.batch,
             sizes: population.sizes.clone(),
             density: case.materials[population.material].density,

@@ -274,6 +274,7 @@ case_words! {
         "mass" => Discharged::Mass,
         "count" => Discharged::Count,
         "residence_time" => Discharged::ResidenceTime,
+        "residence_deviation" => Discharged::ResidenceDeviation,
     }
     Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max, "sum" => Statistic::Sum, "deviation" => Statistic::Deviation, "mass-flow-mean" => Statistic::MassFlowMean }
 }

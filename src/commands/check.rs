@@ -36,6 +36,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         particles: arguments.particles,
     };
     valid.honoured_by(pairing)?;
+    valid.warn_of(pairing);
     let starts = SolverStarts::of(&valid.case, pairing);
     valid.case.warnings.extend(crowded(&starts, pairing));
     say(valid.report())?;

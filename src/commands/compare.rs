@@ -11,7 +11,7 @@ use super::execute::{self, Settings};
 use super::failure::Failure;
 use super::inputs::results_folder;
 use super::parallel::Transport;
-use crate::assembly::{Pairing, SolverStarts};
+use crate::assembly::{Pairing, SolverStarts, pairing_cautions};
 use crate::exit;
 use crate::progress::preparing;
 use crate::results::unoccupied;
@@ -136,6 +136,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let go_on = begin_again("comparison", &out);
     let mut runs = Vec::new();
     for pairing in pairings {
+        let mut of_pairing = case.clone();
+        let more = pairing_cautions(&case, &prepared, pairing);
+        of_pairing.warnings.extend(more);
         let folder = out.join(pairing.name());
         say(format_args!("{}:", pairing.name()))?;
         let settings = Settings {
@@ -151,7 +154,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             recorded: None,
             go_on: &go_on,
         };
-        let done = execute::execute(&case, &prepared, &settings)?;
+        let done = execute::execute(&of_pairing, &prepared, &settings)?;
         say(&done.text)?;
         if done.code == exit::CHECKPOINTED {
             return Ok(done.code);

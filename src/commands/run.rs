@@ -15,7 +15,7 @@ use super::inputs::{read_and_prepare, results_folder};
 use super::parallel::{Parallel, Transport, crowded};
 use super::shell::word;
 use super::told_as_json;
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts, pairing_cautions};
 use crate::exit;
 
 /// Runs a case, natively or with production solvers.
@@ -184,6 +184,8 @@ pub(super) fn run(
     };
     let of_case = SolverStarts::of(&case, pairing);
     let starts = arguments.parallel.starts(pairing, &of_case, network)?;
+    let of_solvers = pairing_cautions(&case, &prepared, pairing);
+    case.warnings.extend(of_solvers);
     case.warnings.extend(crowded(&starts, pairing));
     let line = Line {
         case: case_file,

@@ -13,8 +13,8 @@ use crate::case::model::{Case, Discharged, ForcePart, Measure, Passing};
 /// What had left through each outlet at past times, as far back as a measure looks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct OutflowTrail {
-    /// Process time in ps, and the totals of each outlet from then on to the next entry. The first is the start of the run.
-    marks: Vec<(i64, Vec<[f64; 4]>)>,
+    /// Process time in ps, and the totals of each population at each outlet from then on to the next entry. The first is the start of the run.
+    marks: Vec<(i64, Vec<[f64; 5]>)>,
 }
 
 impl OutflowTrail {
@@ -30,11 +30,11 @@ impl OutflowTrail {
         self.marks.drain(1..far.saturating_sub(1).max(1));
     }
 
-    /// What left through an outlet, or all, over a time up to now or since the start; and the span in s.
+    /// What of a population, or all, left through an outlet, or all, over a time up to now or since the start; and the span in s.
     fn since(
         &self,
         moment: &CommittedState<'_>,
-        outlet: Option<usize>,
+        (outlet, population): (Option<usize>, Option<usize>),
         over: Option<Ticks>,
     ) -> (OutletTotals, f64) {
         let now = moment.clocks.process.count();
@@ -45,9 +45,11 @@ impl OutflowTrail {
             .checked_sub(1)
             .and_then(|place| self.marks.get(place))
             .map_or(&[][..], |mark| &mark.1);
-        let mut sum = [0.0; 4];
+        let mut sum = [0.0; 5];
         for (place, totals) in moment.outlets.iter().enumerate() {
-            if outlet.is_some_and(|only| only != place) {
+            let others = outlet.is_some_and(|only| only != totals.outlet)
+                || population.is_some_and(|only| only != totals.population as usize);
+            if others {
                 continue;
             }
             let before = before.get(place).copied().unwrap_or_default();
@@ -56,7 +58,7 @@ impl OutflowTrail {
             }
         }
         (
-            OutletTotals::from_numbers(sum),
+            OutletTotals::default().with_numbers(sum),
             Ticks::new(now - from).seconds(),
         )
     }
@@ -71,20 +73,21 @@ pub(super) fn reach(case: &Case) -> i64 {
     over.max().unwrap_or(0)
 }
 
-/// What left through outlets; NaN for the mean of none.
+/// What of a population, or all, left through an outlet, or all; NaN for the mean of none.
 pub(super) fn discharge(
     moment: &CommittedState<'_>,
     trail: &OutflowTrail,
     what: Discharged,
-    outlet: Option<usize>,
+    of: (Option<usize>, Option<usize>),
     over: Option<Ticks>,
 ) -> f64 {
-    let (left, span) = trail.since(moment, outlet, over);
+    let (left, span) = trail.since(moment, of, over);
     match what {
         Discharged::MassFlow => left.mass / span,
         Discharged::Mass => left.mass,
         Discharged::Count => left.particles,
-        Discharged::ResidenceTime => left.age / left.fed_mass,
+        Discharged::ResidenceTime => left.mean_age(),
+        Discharged::ResidenceDeviation => left.age_deviation(),
     }
 }
 

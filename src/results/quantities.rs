@@ -186,9 +186,12 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, run: Ru
         Measure::Force { part, patch, along } => {
             passages::force(moment, *part, patch, along, case.gas.pressure)
         }
-        Measure::Discharge { what, outlet, over } => {
-            passages::discharge(moment, run.outflow, *what, *outlet, *over)
-        }
+        Measure::Discharge {
+            what,
+            outlet,
+            population,
+            over,
+        } => passages::discharge(moment, run.outflow, *what, (*outlet, *population), *over),
         Measure::Body { body } => {
             let bodies = moment.bodies;
             let own = bodies.names().zip(bodies.temperature());

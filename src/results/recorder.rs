@@ -277,9 +277,7 @@ impl Recorder {
 
     /// Notes what left through outlets.
     fn note_outflow(&mut self, moment: &CommittedState<'_>) {
-        if !moment.outlets.is_empty() {
-            self.counters.outflow.note(moment, self.reach);
-        }
+        self.counters.outflow.note(moment, self.reach);
     }
 
     /// Adds the window's convergence.

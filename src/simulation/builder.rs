@@ -169,14 +169,16 @@ impl SimulationBuilder {
 
     /// Checks the case as a run would, and makes nothing: its clocks, sizes and the flow in words, as `calcine check` tells them.
     pub fn check(&self) -> Result<String, SimulationError> {
-        let valid = ValidCase::open_with(&self.case, &self.set, &self.laws)?;
+        let mut valid = ValidCase::open_with(&self.case, &self.set, &self.laws)?;
         valid.honoured_by(self.pairing)?;
+        valid.warn_of(self.pairing);
         Ok(valid.report())
     }
 
     /// Reads and checks the case, makes mesh and particles, starts the solvers, and stands before the first window.
     pub fn start(self) -> Result<Simulation, SimulationError> {
-        let valid = ValidCase::open_with(&self.case, &self.set, &self.laws)?;
+        let mut valid = ValidCase::open_with(&self.case, &self.set, &self.laws)?;
+        valid.warn_of(self.pairing);
         self.start_prepared(&valid.case, &valid.prepared, Vec::new())
     }
 

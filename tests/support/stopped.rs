@@ -77,3 +77,26 @@ pub fn stop_and_resume(command: impl Fn() -> Command, out: &Path, at: usize) {
     resumed.arg("--resume");
     finish(resumed);
 }
+
+/// Interrupts a run by SIGINT, as Ctrl-C does, each time its series has grown by so many rows, resumes it after each, and lets it come
+/// to its end. `command` makes the run's command for each stretch by its number. How often it left a checkpoint.
+pub fn interrupt_often(command: impl Fn(usize) -> Command, out: &Path, growths: &[usize]) -> usize {
+    let mut left = 0;
+    let stretch = |number: usize| {
+        let mut next = command(number);
+        if number > 0 {
+            next.arg("--resume");
+        }
+        next
+    };
+    for (number, growth) in growths.iter().enumerate() {
+        let had = rows(out);
+        match stop_by(Signal::INT, stretch(number), |_| rows(out) >= had + growth) {
+            Stopped::Checkpointed => left += 1,
+            Stopped::AtItsEnd => return left,
+            Stopped::BeforeItBegan => panic!("stretch {number} did not listen to SIGINT"),
+        }
+    }
+    finish(stretch(growths.len()));
+    left
+}

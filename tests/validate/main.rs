@@ -14,6 +14,8 @@ mod checkpoint_faults;
 #[path = "../support/checkpoint_harm.rs"]
 mod checkpoint_harm;
 mod counter_current;
+#[cfg(feature = "hdf5")]
+mod drum_restarts;
 mod elastic_box;
 #[cfg(feature = "hdf5")]
 mod external_restarts;
@@ -75,6 +77,8 @@ const ALL: &[(&str, fn())] = &[
     ("backward-step", backward_step::run),
     #[cfg(feature = "hdf5")]
     ("checkpoint-faults", checkpoint_faults::run),
+    #[cfg(feature = "hdf5")]
+    ("drum-restarts", drum_restarts::run),
     ("elastic-box", elastic_box::run),
     #[cfg(feature = "hdf5")]
     ("external-restarts", external_restarts::run),

@@ -8,6 +8,7 @@ mod gas_error;
 mod headers;
 mod json;
 mod packages;
+mod parcels;
 mod python;
 mod runs;
 mod sources;
@@ -51,6 +52,8 @@ usage: cargo xtask TASK
         [CASE …]          OpenFOAM's own solvers: cavity, taylor-green, heated-cavity,
                           hot-duct, five-species
         [--no-build]      with the programs that were built last
+  bench parcels           what parcels cost by phase, and beside OpenFOAM's own MPPICFoam
+        [--no-build]      with the programs that were built last
   bench python-overhead   processor time of runs from Python beyond that of `calcine run`, with
         [ROUNDS [CASE …]] the same bits: 5 rounds of moving-bed by default; KEY=VALUE changes it
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
@@ -63,7 +66,7 @@ usage: cargo xtask TASK
         [--seed S]        random moment and check that it is named, that everything ends and
         [--from K]        that nothing is left (default: 500 trials)
   validate [NAME …]       long validations, all by default: agreement, backward-step,
-                          checkpoint-faults, elastic-box, external-restarts, flame,
+                          checkpoint-faults, drum-restarts, elastic-box, external-restarts, flame,
                           fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, parcel-beds,
                           repose, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, slurm,
@@ -109,6 +112,10 @@ enum Task {
     Gallery(gallery::GalleryChoice),
     Bench(bench::Choice),
     GasError(gas_error::ErrorChoice),
+    /// Whether to measure the programs that were built last.
+    Parcels {
+        built: bool,
+    },
     PythonOverhead(Vec<OsString>),
     /// A test program of its own, with its words.
     Program {
@@ -141,6 +148,11 @@ fn read(words: &[OsString]) -> Option<Task> {
             let words = rest[1..].iter().map(|word| word.to_str());
             gas_error::ErrorChoice::read(words).map(Task::GasError)
         }
+        "bench" if rest.first().is_some_and(|word| word == "parcels") => match &rest[1..] {
+            [] => Some(Task::Parcels { built: false }),
+            [word] if word == "--no-build" => Some(Task::Parcels { built: true }),
+            _ => None,
+        },
         "bench" if rest.first().is_some_and(|word| word == "python-overhead") => {
             let rounds = rest.get(1).map(|word| word.to_str()?.parse::<u32>().ok());
             rounds
@@ -236,6 +248,7 @@ fn perform(task: Task) -> TaskResult<()> {
         Task::Gallery(choice) => gallery::run(&workspace, &choice),
         Task::Bench(choice) => bench::run(&workspace, &choice),
         Task::GasError(choice) => gas_error::run(&workspace, &choice),
+        Task::Parcels { built } => parcels::run(&workspace, built),
         Task::PythonOverhead(words) => python::overhead(&workspace, &words),
         Task::Program { name, needs, words } => tasks::program(&workspace, name, needs, &words),
         Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),

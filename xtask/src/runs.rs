@@ -17,7 +17,7 @@ const SIZES: [[u32; 3]; 3] = [[18, 42, 5], [38, 92, 2], [84, 190, 1]];
 
 /// Phases in the order of a window, as `wall_time_s` in summary.json names them. The first two
 /// happen once in a run of a frozen bed, and in each window where particles move.
-const PHASES: [&str; 7] = [
+pub const PHASES: [&str; 7] = [
     "mapping",
     "smoother",
     "exchange",
@@ -49,7 +49,7 @@ fn sizes() -> &'static [[u32; 3]] {
 }
 
 /// The summary of a run of a case, its file below the workspace's folder, its results below the target folder.
-fn summary(
+pub fn summary(
     workspace: &Workspace,
     (case, name): (&str, &str),
     words: &[String],
@@ -90,7 +90,8 @@ fn heated_bed([across, along, windows]: [u32; 3]) -> Vec<String> {
     set(&settings)
 }
 
-fn set(settings: &[String]) -> Vec<String> {
+/// Words of the command line that change keys of a case.
+pub fn set(settings: &[String]) -> Vec<String> {
     let words = settings.iter();
     words
         .flat_map(|setting| ["--set".to_owned(), setting.clone()])

@@ -195,6 +195,13 @@ void Foam::calcine::parcels::advance(scalar span)
     ++time_;
     cloud_->evolve();
     ++pushed_.step;
+    // What the implicit packing solved for is the old solid fraction of its next step, where it cancels but for round-off: a cloud that
+    // comes from a checkpoint has none of it.
+    const word alpha(word(cloudName) + ":alpha");
+    if (mesh_.foundObject<volScalarField>(alpha))
+    {
+        mesh_.lookupObjectRef<volScalarField>(alpha) = dimensionedScalar(dimless, Zero);
+    }
     if (cloud_->size() != ids_.size())
     {
         std::ostringstream text;

@@ -273,7 +273,7 @@ fn packing(packing: &ParcelPacking) -> String {
             stress: law,
             restitution,
         } => format!(
-            "explicit;\n    explicitCoeffs\n    {{\n        {}\n        correctionLimitingMethod {{ type relative; e {restitution:e}; }}\n    }}",
+            "explicit;\n    explicitCoeffs\n    {{\n        {}\n        correctionLimitingMethod {{ type absolute; e {restitution:e}; }}\n    }}",
             stress(law)
         ),
     }

@@ -46,6 +46,7 @@ impl CoupledRun {
         }
         let moment = WindowSpan {
             window: window.index,
+            start: self.clocks.process.seconds(),
             span: window.span.process.seconds(),
             acceleration: window.acceleration(),
         };
@@ -85,6 +86,7 @@ impl CoupledRun {
         for &(row, outlet) in went {
             let particle = Leaving {
                 id: fields.id[row],
+                population: fields.population[row],
                 weight: fields.weight_of(row),
                 mass: fields.row_mass(row),
             };

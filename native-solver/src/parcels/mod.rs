@@ -203,6 +203,9 @@ impl NativeParcels {
                 .steps_left(parcels, flights, (left, span), done)
                 .map_err(|error| self.refused(error))?;
             let time = if steps == 1.0 { left } else { left / steps };
+            let begun = (&*parcels, amounts);
+            self.packer
+                .begin(&self.motion.packing, &self.tetrahedra, begun);
             fly(&self.tetrahedra, &self.walls, (parcels, flights), time);
             for (parcel, mass) in parcels.iter().zip(&mass) {
                 support += *mass * parcel.rebounded;

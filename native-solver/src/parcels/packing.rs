@@ -84,6 +84,8 @@ pub struct Packer {
     /// Face of the mesh of each face of the grid.
     mesh_face: Vec<u32>,
     pub(super) system: StressSystem,
+    /// Mean velocity of the solid in m/s at the corners where the step begins, for the explicit stress.
+    mean: Option<CornerValues<Vec3>>,
 }
 
 impl Packer {
@@ -106,6 +108,7 @@ impl Packer {
             grid_face,
             mesh_face,
             grid,
+            mean: None,
         }
     }
 
@@ -162,6 +165,22 @@ impl Packer {
         }
     }
 
+    /// Before a flight: keeps the mean velocity of the solid, against which the explicit stress is limited. What gravity adds in the step is a
+    /// slip against it, so that the stress can hold a bed up.
+    pub fn begin(
+        &mut self,
+        packing: &ParcelPacking,
+        tetrahedra: &Tetrahedra,
+        (parcels, amounts): (&[FlyingParcel], RowAmounts<'_>),
+    ) {
+        if matches!(packing, ParcelPacking::Explicit { .. }) {
+            let solid = self.solid(tetrahedra, parcels, amounts);
+            let mean = solid.momentum.iter().zip(&solid.mass);
+            let mean: Vec<Vec3> = mean.map(|(p, &m)| per_mass(*p, m)).collect();
+            self.mean = Some(self.weights.spread(tetrahedra.mesh(), &mean));
+        }
+    }
+
     /// Has the stress act over a step in s; where the bed is firm, velocities change by the stress that keeps packed cells from being
     /// compressed in place of that which moves parcels apart.
     pub fn act(
@@ -184,10 +203,10 @@ impl Packer {
                 let of = |&fraction: &f64| stress.stress(fraction).0;
                 let stress: Vec<f64> = solid.fraction.iter().map(of).collect();
                 let changes = self.changes(&stress, &solid.mass, time);
-                let mean = solid.momentum.iter().zip(&solid.mass);
-                let mean: Vec<Vec3> = mean.map(|(p, &m)| per_mass(*p, m)).collect();
                 let changes = self.weights.spread(tetrahedra.mesh(), &changes);
-                let mean = self.weights.spread(tetrahedra.mesh(), &mean);
+                let Some(mean) = self.mean.take() else {
+                    return Ok(PackingAction::default());
+                };
                 let mut given = Vec3::zeros();
                 for (row, parcel) in parcels.iter_mut().enumerate() {
                     let share = tetrahedra.map(parcel.place).of(parcel.position);

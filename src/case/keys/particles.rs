@@ -83,6 +83,8 @@ pub(super) const FEEDS: &[Key] = &[
     key("population", Text, Required, "Of which population they are: it gives material and diameters.", "\"beads\""),
     key("region", Table(ZONE), Required, "Where: a box or a cylinder.", "{ box = { from = \"0 0 80 mm\", to = \"50 50 100 mm\" } }"),
     key("mass_rate", Number(D::MASS_FLOW, Positive), Without("none"), "Mass flow; particles wait where there is no room. This or `batch`, or both.", "\"1 kg/h\""),
+    key("begin", Number(D::TIME, NotNegative), Without("the start"), "Process time at which the mass flow begins.", "\"10 min\""),
+    key("end", Number(D::TIME, Positive), Without("never"), "Process time at which the mass flow ends: with `begin` a pulse of tracer, with a population of its own as its tag.", "\"11 min\""),
     key("batch", Number(D::MASS, Positive), Without("none"), "Mass that comes before the first window; what finds no room follows. This or `mass_rate`, or both.", "\"20 g\""),
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at which they come.", "\"0 0 -0.01 m/s\""),
     key("temperature", Number(D::TEMPERATURE, Positive), Without("that of the population"), "Their temperature.", "\"300 K\""),

@@ -44,6 +44,8 @@ pub struct FeedSpec {
     pub zone: Zone,
     /// Mass flow in kg/s.
     pub rate: f64,
+    /// Process times in s at which that flow begins and ends.
+    pub period: [f64; 2],
     /// Mass in kg at the start.
     pub batch: f64,
     /// Their velocity in m/s of process time.

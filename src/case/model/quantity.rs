@@ -106,6 +106,8 @@ pub enum Measure {
         what: Discharged,
         /// Index of the outlet; all of them where none is named.
         outlet: Option<usize>,
+        /// Index of the population; all of them where none is named.
+        population: Option<usize>,
         /// Process time up to now that counts; all of the run where it is not stated.
         over: Option<Ticks>,
     },
@@ -155,6 +157,8 @@ pub enum Discharged {
     Count,
     /// Mean process time in s, over the mass, since feeds brought them.
     ResidenceTime,
+    /// Standard deviation of that time, over the mass.
+    ResidenceDeviation,
 }
 
 /// Where a statistic of the gas is taken.

@@ -49,6 +49,7 @@ fn feed(table: &TableReader<'_>, particles: Option<&[Population]>) -> Option<Fee
         let help = "add mass_rate = \"1 kg/h\", or batch = \"20 g\" for what is there at the start";
         table.fail_whole("needs `mass_rate` or `batch`", help);
     }
+    let period = period(table);
     let velocity = table.vector("velocity");
     let temperature = table.number("temperature");
     let seed = table.whole("seed");
@@ -74,11 +75,33 @@ fn feed(table: &TableReader<'_>, particles: Option<&[Population]>) -> Option<Fee
         population: index,
         zone: region?,
         rate: rate.unwrap_or(0.0),
+        period: period?,
         batch: batch.unwrap_or(0.0),
         velocity: velocity.map_or(Vec3::zeros(), Vec3::from),
         temperature: temperature.unwrap_or(particles[index].temperature),
         seed: seed?,
     })
+}
+
+/// When the mass flow of a feed begins and ends, in s.
+fn period(table: &TableReader<'_>) -> Option<[f64; 2]> {
+    let ends = ["begin", "end"].map(|key| (table.has(key), table.number(key)));
+    let alone = ["begin", "end"].into_iter().zip(ends);
+    for (key, (given, _)) in alone {
+        if given && !table.has("mass_rate") {
+            let help = "add mass_rate, or remove it: a batch comes before the first window";
+            table.fail(key, "stands without `mass_rate`, which it limits", help);
+        }
+    }
+    let [begin, end] = ends;
+    let begin = if begin.0 { begin.1? } else { 0.0 };
+    let end = if end.0 { end.1? } else { f64::INFINITY };
+    if end <= begin {
+        let rule = format!("is {end} s, not after `begin`, {begin} s");
+        table.fail("end", rule, "write a later time");
+        return None;
+    }
+    Some([begin, end])
 }
 
 pub(super) fn outlets(root: &TableReader<'_>) -> Vec<Outlet> {

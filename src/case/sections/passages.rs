@@ -124,8 +124,13 @@ pub(super) fn discharge(
         reader.fail("outlet", format!("is \"{name}\""), help);
         return None;
     }
+    let population = match reader.text("population") {
+        Some(name) => Some(population(reader, name, known)?),
+        None => None,
+    };
     let what = what?;
-    if what == Discharged::ResidenceTime && !known.feeds {
+    let ages = [Discharged::ResidenceTime, Discharged::ResidenceDeviation];
+    if ages.contains(&what) && !known.feeds {
         let rule = "is the residence time, which is known of particles that a feed brings";
         let help = "add [[feeds]]: when the particles of the start came is not known";
         reader.fail("discharge", rule, help);
@@ -138,7 +143,25 @@ pub(super) fn discharge(
         Discharged::MassFlow => "mass_flow",
         Discharged::Mass => "mass",
         Discharged::Count => "count",
-        Discharged::ResidenceTime => "residence_time",
+        Discharged::ResidenceTime | Discharged::ResidenceDeviation => "residence_time",
     };
-    Some((Measure::Discharge { what, outlet, over }, field))
+    let measure = Measure::Discharge {
+        what,
+        outlet,
+        population,
+        over,
+    };
+    Some((measure, field))
+}
+
+/// Index of the population of a name.
+fn population(reader: &TableReader<'_>, name: &str, known: &Known<'_>) -> Option<usize> {
+    let all = known.populations?;
+    let found = all.iter().position(|one| one.name == name);
+    if found.is_none() {
+        let names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
+        let help = format!("the populations are {}", names.join(", "));
+        reader.fail("population", format!("is \"{name}\""), help);
+    }
+    found
 }

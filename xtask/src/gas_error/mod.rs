@@ -24,8 +24,9 @@ use std::thread;
 use case::{CoupledGas, ErrorCase, Reference, Resolution};
 use coupled::Done;
 use field::MeanField;
-use measure::Cost;
+pub use measure::{Cost, measured};
 use report::ErrorRow;
+pub use stock::copy;
 
 use crate::packages::{self, Needs};
 use crate::steps::{Stop, TaskResult, loud_step, say, step};

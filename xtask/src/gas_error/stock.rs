@@ -123,7 +123,8 @@ fn write(path: &Path, text: &str) -> TaskResult<()> {
     fs::write(path, text).map_err(|cause| Stop::io(path, &cause))
 }
 
-fn copy(from: &Path, to: &Path) -> TaskResult<()> {
+/// Copies a folder with all that is in it.
+pub fn copy(from: &Path, to: &Path) -> TaskResult<()> {
     fs::create_dir_all(to).map_err(|cause| Stop::io(to, &cause))?;
     for entry in fs::read_dir(from)
         .map_err(|cause| Stop::io(from, &cause))?
