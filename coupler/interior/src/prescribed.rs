@@ -6,7 +6,7 @@ use calcine_physics::solid::HeatCapacity;
 use crate::column::{Ragged, StateColumn};
 use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings, Tally,
+    At, Bodies, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine, Surroundings, Tally,
     Transfer,
 };
 use crate::thin::Thin;
@@ -90,7 +90,7 @@ impl ParticleModel for PrescribedTemperature {
         &mut self,
         around: &Surroundings<'_>,
         _span: f64,
-        _network: &[f64],
+        _network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
         self.set_target(around);
@@ -187,7 +187,8 @@ mod tests {
         for (end, before, after) in [(5.0, 300.0, 400.0), (10.0, 400.0, 500.0)] {
             lines.reset(1, 0);
             let gas = around(&[900.0], &[0.25], end);
-            held.respond(&gas, span, &[0.0], &mut lines).unwrap();
+            held.respond(&gas, span, &[NetworkHeat::default()], &mut lines)
+                .unwrap();
             assert_eq!((lines.conductance[0], lines.temperature[0]), (0.25, after));
             let (heat, network) = (0.25 * (900.0 - after), -3.0);
             let took = Transfer {

@@ -284,6 +284,11 @@ impl RadialPhysics {
         let kelvin = ws.now.temperature[n][lane];
         ws.right[n * block][lane] += film * (outside.temperature - kelvin) + outside.heat;
         ws.entries[at(block, own, 0, 0)][lane] += film;
+        if ws.alone[lane] == 0.0 {
+            let beside = &outside.beside;
+            ws.right[n * block][lane] += beside.heat(kelvin, kelvin.powi(4));
+            ws.entries[at(block, own, 0, 0)][lane] += beside.slope(kelvin);
+        }
         let net = net_flow(lane, outside, ws);
         let opening = ws.held.opening[lane];
         for k in 0..g {

@@ -3,6 +3,7 @@
 mod conservation;
 mod limits;
 mod orders;
+mod radiation;
 mod steps;
 mod support;
 mod turning;
