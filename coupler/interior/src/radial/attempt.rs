@@ -32,8 +32,7 @@ const CLOSE: f64 = 1e-8;
 /// A particle that cannot be followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
-    "the inside of a particle at {temperature} K cannot be followed beyond {reached} s of a window of {span} s: check that its pores \
-     stay open (true densities, `size`), its rate constants and its permeability, or shorten the windows"
+    "the inside of a particle at {temperature} K cannot be followed beyond {reached} s of a window of {span} s: {}", self.remedy()
 )]
 pub struct RadialStalled {
     /// Temperature of its surface in K.
@@ -42,6 +41,22 @@ pub struct RadialStalled {
     pub reached: f64,
     /// The window in s.
     pub span: f64,
+    /// True where solids came to fill a shell.
+    pub full: bool,
+}
+
+impl RadialStalled {
+    fn remedy(&self) -> &'static str {
+        match self.full {
+            true => {
+                "its solids come to fill a shell, so that no gas passes: check true densities, `density` and `size`"
+            }
+            false => {
+                "its equations are not solved at any step: check the rate constants, orders and equilibria of its reactions, and \
+                 conductivity and permeability, or shorten the windows"
+            }
+        }
+    }
 }
 
 /// What a window does to a particle; its state is left in the lane of the workspace.
@@ -102,6 +117,8 @@ pub(super) struct RadialCourse {
     fallen: usize,
     /// Error of what the step turned over, over its tolerance.
     turned_error: f64,
+    /// True where solids filled a shell since the last step that was taken.
+    full: bool,
     pub out: RadialOutcome,
 }
 
@@ -143,6 +160,7 @@ impl RadialPhysics {
             moved: f64::INFINITY,
             fallen: 0,
             turned_error: 0.0,
+            full: false,
             out: RadialOutcome::default(),
         };
         self.begin(lane, &mut course, ws);
@@ -187,6 +205,7 @@ impl RadialPhysics {
         course.round += 1;
         let moved = ws.moved[lane];
         let sound = ws.updating[lane] == 0.0 || ws.broken[lane] == 0.0;
+        course.full |= ws.room[lane] <= 0.0;
         let goes = sound && moved.is_finite() && ws.room[lane] > 0.0;
         // Changes shrink by a rate: the iterate is off by what the later ones would come to in all (Hairer and Wanner, Solving
         // Ordinary Differential Equations II, 2nd ed. (1996), section IV.8).
@@ -265,6 +284,7 @@ impl RadialPhysics {
         let out = &mut course.out;
         if error <= 1.0 {
             course.time += course.length;
+            course.full = false;
             out.steps += 1;
             out.heat += out.step_heat;
             out.surface[0] += out.step_surface[0];
@@ -299,6 +319,7 @@ impl RadialPhysics {
                 temperature: ws.start.temperature[ws.shells][lane],
                 reached: course.time,
                 span: course.span,
+                full: course.full,
             }));
         }
         let left = course.span - course.time;

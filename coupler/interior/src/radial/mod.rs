@@ -15,6 +15,7 @@ mod book;
 mod columns;
 mod equations;
 mod grid;
+mod instant;
 pub mod material;
 mod model;
 mod onwards;
