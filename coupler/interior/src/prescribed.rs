@@ -246,10 +246,10 @@ mod tests {
             Ok::<(), ModelError>(())
         });
         assert_eq!(solved.unwrap(), crate::NetworkOutcome::Settled);
-        // 2 k a of the contact, a = √(R/2 · δ): 2 (T − 300) = G (450 − T).
+        // 2 k a of the contact, a = √(R/2 · δ), and 2 T' = G (450 − T) from 300 K on.
         let conductance = 2.0 * 100.0 * (0.5e-3_f64 * 1e-5).sqrt();
-        let other = (2.0 * 300.0 + conductance * 450.0) / (2.0 + conductance);
-        let flow = conductance * (450.0 - other);
+        let other = 450.0 - 150.0 * (-conductance / 2.0).exp();
+        let flow = 2.0 * (other - 300.0);
         assert!((network.heat[1] / flow - 1.0).abs() < 1e-10);
         assert_eq!(network.heat[0], -network.heat[1]);
     }

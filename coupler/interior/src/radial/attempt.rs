@@ -282,7 +282,17 @@ impl RadialPhysics {
         ws: &mut RadialWorkspace,
     ) -> Option<Result<(), RadialStalled>> {
         let out = &mut course.out;
-        if error <= 1.0 {
+        let factor = if error.is_finite() {
+            (SAFETY / error.max(1e-10).sqrt()).clamp(0.2, 4.0)
+        } else {
+            0.25
+        };
+        let step = course.length * factor;
+        // What comes and goes within the shortest step is not followed: the step ends where it leads to.
+        let fleeting = error > 1.0 && error.is_finite() && step < SHORTEST * course.span;
+        let factor = if fleeting { 4.0 } else { factor };
+        let step = course.length * factor;
+        if error <= 1.0 || fleeting {
             course.time += course.length;
             course.full = false;
             out.steps += 1;
@@ -308,12 +318,6 @@ impl RadialPhysics {
         } else {
             out.repeated += 1;
         }
-        let factor = if error.is_finite() {
-            (SAFETY / error.max(1e-10).sqrt()).clamp(0.2, 4.0)
-        } else {
-            0.25
-        };
-        let step = course.length * factor;
         if step < SHORTEST * course.span || out.steps + out.repeated > MOST_STEPS {
             return Some(Err(RadialStalled {
                 temperature: ws.start.temperature[ws.shells][lane],

@@ -1,6 +1,7 @@
 //! Particles with shells as a whole.
 
 mod conservation;
+mod fast;
 mod limits;
 mod orders;
 mod radiation;

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::Reacting;
 use super::attempt::{AttemptGuess, ParticleStart, ParticleWorkspace};
 use super::passage::ParticleSurroundings;
-use crate::model::Surroundings;
+use crate::model::{NetworkHeat, Surroundings};
 
 /// A particle whose reactions cannot be followed.
 #[derive(Clone, Debug, Error, PartialEq)]
