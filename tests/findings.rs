@@ -13,8 +13,8 @@ use calcine::results::warnings::{WarningPlace, WarningSummary};
 use calcine::simulation::{Simulation, SimulationError};
 use calcine::{exit, report};
 use calcine_coupler::interior::{
-    At, Bodies, GasLines, Inventory, ModelError, NetworkHeat, Newcomer, ParticleModel, Ragged, StateColumn,
-    SurfaceLine, Surroundings, Thin, Transfer,
+    At, Bodies, GasLines, Inventory, ModelError, NetworkHeat, Newcomer, ParticleModel, Ragged,
+    StateColumn, SurfaceLine, Surroundings, Thin, Transfer,
 };
 use calcine_coupler::physics::flow_range::FlowRange;
 use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer};

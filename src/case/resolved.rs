@@ -261,7 +261,8 @@ mod tests {
         let told = |key: &str, value: &str| {
             let set = format!("materials.limestone.radial.{key}={value}");
             let all = warned("porous-stones", &[&set]);
-            let about = |one: &String| one.contains("pore_diameter") || one.contains("permeability");
+            let about =
+                |one: &String| one.contains("pore_diameter") || one.contains("permeability");
             all.into_iter().filter(about).collect::<Vec<String>>()
         };
         assert_eq!(told("pore_diameter", "2 um"), Vec::<String>::new());

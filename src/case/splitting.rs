@@ -164,7 +164,9 @@ impl<'a> Splitting<'a> {
         ];
         // Shells radiate by steps of their own, to what they see at its mean over the window.
         lines.extend(self.radiation.map(|times_rate| match self.resolved {
-            true => format!("h_r A AF dt/(m c), window over the time of radiation {times_rate:.2e}"),
+            true => {
+                format!("h_r A AF dt/(m c), window over the time of radiation {times_rate:.2e}")
+            }
             false => {
                 let error = network_error(times_rate);
                 format!(

@@ -2,9 +2,9 @@
 //! surface and bound. A model of particles that nothing but this test knows.
 
 use calcine_coupler::interior::{
-    At, Bodies, Channel, ColumnKind, ColumnRole, GasLines, Inventory, ModelError, NetworkHeat, Newcomer,
-    ParticleModel, Ragged, StateColumn, SurfaceLine, Surroundings, TEMPERATURE, Tally, Transfer,
-    without,
+    At, Bodies, Channel, ColumnKind, ColumnRole, GasLines, Inventory, ModelError, NetworkHeat,
+    Newcomer, ParticleModel, Ragged, StateColumn, SurfaceLine, Surroundings, TEMPERATURE, Tally,
+    Transfer, without,
 };
 use calcine_coupler::physics::thermo::{Element, Mixture, Species};
 

@@ -11,7 +11,8 @@ use calcine_interior::radial::{
 };
 use calcine_interior::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use calcine_interior::{
-    ColumnKind, GasLines, NetworkHeat, Newcomer, ParticleModel, Ragged, Surroundings, TEMPERATURE, Transfer,
+    ColumnKind, GasLines, NetworkHeat, Newcomer, ParticleModel, Ragged, Surroundings, TEMPERATURE,
+    Transfer,
 };
 use calcine_physics::conduction::Conductivity;
 use calcine_physics::film::{FilmCoefficient, FilmTemperature, FilmTheory, StefanFlow};

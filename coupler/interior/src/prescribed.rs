@@ -6,8 +6,8 @@ use calcine_physics::solid::HeatCapacity;
 use crate::column::{Ragged, StateColumn};
 use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine, Surroundings, Tally,
-    Transfer,
+    At, Bodies, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
 };
 use crate::thin::Thin;
 

@@ -186,7 +186,8 @@ impl InteriorStage {
             bodies.take(None, [span, end]);
             let heat = self.heat.iter();
             self.told.clear();
-            self.told.extend(heat.map(|heat| NetworkHeat::constant(*heat)));
+            self.told
+                .extend(heat.map(|heat| NetworkHeat::constant(*heat)));
             return Ok(());
         };
         let (reservoirs, of) = self.paths.reservoirs(end, bodies.told());

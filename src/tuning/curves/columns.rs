@@ -175,10 +175,22 @@ mod tests {
     #[test]
     fn headings_of_instruments_are_recognised() {
         for (headings, column) in [
-            (["Time (min)", "Unsubtracted Weight (mg)", "T/degC"], CurveColumn::Temperature),
-            (["Time (min)", "Unsubtracted Weight (mg)", "T (C)"], CurveColumn::Temperature),
-            (["Time (min)", "T (deg C)", "Baseline Weight (mg)"], CurveColumn::Temperature),
-            (["Time (min)", "T/degC", "Unsubtracted Weight (mg)"], CurveColumn::Mass),
+            (
+                ["Time (min)", "Unsubtracted Weight (mg)", "T/degC"],
+                CurveColumn::Temperature,
+            ),
+            (
+                ["Time (min)", "Unsubtracted Weight (mg)", "T (C)"],
+                CurveColumn::Temperature,
+            ),
+            (
+                ["Time (min)", "T (deg C)", "Baseline Weight (mg)"],
+                CurveColumn::Temperature,
+            ),
+            (
+                ["Time (min)", "T/degC", "Unsubtracted Weight (mg)"],
+                CurveColumn::Mass,
+            ),
         ] {
             let sheet = Sheet {
                 headings: headings.map(str::to_owned).to_vec(),
@@ -189,10 +201,17 @@ mod tests {
             };
             let found = find(Path::new("a.csv"), &sheet, column, &ColumnChoice::default());
             let found = found.unwrap().unwrap();
-            assert_eq!(found.place, headings.iter().position(|name| match column {
-                CurveColumn::Mass => name.starts_with("Unsubtracted"),
-                _ => name.starts_with("T/") || name.starts_with("T ("),
-            }).unwrap(), "{headings:?}");
+            assert_eq!(
+                found.place,
+                headings
+                    .iter()
+                    .position(|name| match column {
+                        CurveColumn::Mass => name.starts_with("Unsubtracted"),
+                        _ => name.starts_with("T/") || name.starts_with("T ("),
+                    })
+                    .unwrap(),
+                "{headings:?}"
+            );
         }
     }
 
@@ -209,7 +228,11 @@ mod tests {
             ("T/degC", "T", Some("degC")),
             ("T (deg C)", "T", Some("deg C")),
             ("T/deg C", "T", Some("deg C")),
-            ("Unsubtracted Weight (mg)", "Unsubtracted Weight", Some("mg")),
+            (
+                "Unsubtracted Weight (mg)",
+                "Unsubtracted Weight",
+                Some("mg"),
+            ),
             ("Mass", "Mass", None),
             ("dm/dt", "dm/dt", None),
         ] {

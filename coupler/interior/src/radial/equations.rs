@@ -15,8 +15,8 @@ use calcine_numerics::{Dual, Number};
 use calcine_physics::film::bernoulli;
 use calcine_physics::gas::GAS_CONSTANT;
 
-use super::physics::RadialPhysics;
 use super::instant::{ReactingEnthalpies, ShellStores};
+use super::physics::RadialPhysics;
 use super::rates::ShellState;
 use super::side_by_side::Wide;
 use super::transport::{ANY, Outside, OutsideLanes};

@@ -80,7 +80,9 @@ impl Reacting {
             &mut results,
             width,
             ParticleScratch::default,
-            |p, row, scratch| self.react_one(p, around, (span, network[p].mean, first), row, scratch),
+            |p, row, scratch| {
+                self.react_one(p, around, (span, network[p].mean, first), row, scratch)
+            },
         );
         for (p, row) in results.chunks_exact(width).enumerate() {
             let (head, rest) = row.split_at(EXTENTS);

@@ -139,7 +139,12 @@ fn with_gas(windows: usize) -> f64 {
             let mut lines = GasLines::default();
             lines.reset(1, 0);
             model
-                .respond(&still.around(&lists), span, &[NetworkHeat::default()], &mut lines)
+                .respond(
+                    &still.around(&lists),
+                    span,
+                    &[NetworkHeat::default()],
+                    &mut lines,
+                )
                 .unwrap();
             let (slope, at) = (lines.conductance[0], lines.temperature[0]);
             next = (stored * gas + span * slope * at) / (stored + span * slope);

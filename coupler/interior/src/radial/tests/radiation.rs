@@ -215,9 +215,8 @@ fn radiation_is_of_second_order_in_the_steps_of_shells() {
 #[test]
 fn radiation_of_thin_particles_is_of_second_order_in_windows() {
     let exact = lumped(20.0);
-    let errors = [4, 8, 16].map(|windows| {
-        (after(&mut thin(), &mut within_wall(1.0), 20.0, windows) - exact).abs()
-    });
+    let errors = [4, 8, 16]
+        .map(|windows| (after(&mut thin(), &mut within_wall(1.0), 20.0, windows) - exact).abs());
     for pair in errors.windows(2) {
         assert!((pair[0] / pair[1]).log2() > 1.7, "{errors:?}");
     }
@@ -258,7 +257,10 @@ fn second(windows: usize, emissivity: f64, contacts: bool) -> f64 {
     };
     if contacts {
         // The first is hotter.
-        let kelvin = model.columns().iter().position(|one| one.name == TEMPERATURE);
+        let kelvin = model
+            .columns()
+            .iter()
+            .position(|one| one.name == TEMPERATURE);
         assert!(kelvin.is_some());
         let width = model.layout.width();
         let shells = model.layout.temperatures();
