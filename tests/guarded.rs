@@ -387,7 +387,7 @@ fn a_pressure_of_a_patch_off_that_of_the_gas_is_warned_of() {
     assert!(!warned("moving", &[&top("0.99 atm")], words));
 }
 
-/// A sphere of 5 mm that cools by radiation: an implicit step of 10 s is off by up to 0.184 times its rate times the step.
+/// A sphere that cools by radiation: a step is off by up to 0.031 times the square of its rate times the step.
 #[test]
 fn the_error_of_radiation_over_a_window_is_told() {
     let set = [

@@ -67,6 +67,8 @@ pub(super) struct Splitting<'a> {
     error: f64,
     /// Window over the time of radiation to black surroundings, at the hottest that the case states; `None` where there is none.
     radiation: Option<f64>,
+    /// True where contacts conduct, which may be faster than radiation.
+    conducts: bool,
     /// Window over the drag's own time, where there is drag.
     drag: Option<f64>,
     /// Drag coefficient at the terminal velocity over that at rest, and the window over m/K there; `None` where nothing falls.
@@ -125,6 +127,7 @@ impl<'a> Splitting<'a> {
                 let heat = material.density * volume * solid_capacity;
                 h * area / heat * factor * window
             }),
+            conducts: case.laws.conducts(),
             drag,
             fall,
             biot,
@@ -166,6 +169,14 @@ impl<'a> Splitting<'a> {
         lines.extend(self.radiation.map(|times_rate| match self.resolved {
             true => {
                 format!("h_r A AF dt/(m c), window over the time of radiation {times_rate:.2e}")
+            }
+            // Particles that hold each other by fast contacts follow what they radiate to together, by implicit steps.
+            false if self.conducts => {
+                let error = STEP_ERROR * times_rate;
+                format!(
+                    "0.18 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
+                    above(error)
+                )
             }
             false => {
                 let error = network_error(times_rate);
