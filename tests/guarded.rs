@@ -405,7 +405,7 @@ fn the_error_of_radiation_over_a_window_is_told() {
     let told = String::from_utf8(output.stdout).unwrap();
     // h_r A/(m c) = 6 h_r/(d rho c), h_r = 4 0.8 sigma 1000^3 W/(m^2 K), at windows of 2 ms.
     let rate = 6.0 * 4.0 * 0.8 * 5.670_374_419e-8 * 1e9 / (2e-3 * 2500.0 * 840.0);
-    let error = 0.031 * (rate * 2e-3).powi(2);
+    let error = 0.031 * f64::powi(rate * 2e-3, 2);
     let line = format!("error of radiation       {error:.2e}");
     assert!(
         told.contains(&line),
