@@ -204,6 +204,7 @@ radiation = { law = "view-factors", surroundings = "1400 K" }
 mapping = "centroid"
 [output]
 every = "100 s"
+series_every = "1 s"
 [[quantities]]
 name = "kelvin"
 measure = { particles = "temperature", statistic = "mean" }
