@@ -243,7 +243,10 @@ fn shells_that_radiate_and_touch_heat_alike_in_short_and_long_windows() {
             let name = format!("{conductivity}-{end}-{step}");
             radiant(folder.path(), &name, conductivity, &steps(end, step), &[])
         };
-        for (end, windows, most) in [(20, &[5, 10, 20][..], &begins[..]), (100, &[10, 100], &ends)] {
+        for (end, windows, most) in [
+            (20, &[5, 10, 20][..], &begins[..]),
+            (100, &[10, 100], &ends),
+        ] {
             let fine = at(end, 1);
             for (step, most) in windows.iter().zip(most) {
                 let found = at(end, *step);

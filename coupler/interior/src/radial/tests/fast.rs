@@ -156,3 +156,29 @@ fn nucleation_takes_its_time_where_it_is_not_fast() {
     let exact = 1.0 - (a - (k * 10.0 + a.powf(1.0 / m)).powf(m)).exp();
     assert!((found - exact).abs() < 0.02, "{found} {exact}");
 }
+
+#[test]
+fn limestone_that_bursts_cools_until_it_no_longer_does() {
+    for (factor, order) in [(1e20, 0.01), (1e23, 0.01), (1e28, 0.01), (1e21, 1.0)] {
+        let numerics = RadialNumerics {
+            temperature: 1.0,
+            conversion: 1e-3,
+            ..RadialNumerics::new(grid(15))
+        };
+        let mut model = limestone(1e15, numerics);
+        for reaction in &mut model.physics.chemistry.reactions {
+            reaction.equilibrium = Equilibrium::OneWay;
+            if let Rate::Power(law) = &mut reaction.rate {
+                law.rate_constant.factor = factor;
+                law.solids = vec![(0, order)];
+            }
+        }
+        put(&mut model, LIME_RADIUS, LIME_DENSITY, 1100.0, 1);
+        for _ in 0..8 {
+            window(&mut model, &flue_gas(1400.0), LIME_RADIUS, 2.44e-3);
+        }
+        // It takes 178 kJ/mol, and holds about 110 J/mol/K.
+        let found = model.conversion(model.row(0), None);
+        assert!((0.01..0.5).contains(&found), "{factor} {order}: {found}");
+    }
+}
