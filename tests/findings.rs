@@ -13,8 +13,8 @@ use calcine::results::warnings::{WarningPlace, WarningSummary};
 use calcine::simulation::{Simulation, SimulationError};
 use calcine::{exit, report};
 use calcine_coupler::interior::{
-    At, Bodies, GasLines, Inventory, ModelError, Newcomer, ParticleModel, Ragged, StateColumn,
-    SurfaceLine, Surroundings, Thin, Transfer,
+    At, Bodies, GasLines, Inventory, ModelError, NetworkHeat, Newcomer, ParticleModel, Ragged,
+    StateColumn, SurfaceLine, Surroundings, Thin, Transfer,
 };
 use calcine_coupler::physics::flow_range::FlowRange;
 use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer};
@@ -346,7 +346,7 @@ impl ParticleModel for Spoilt {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
         self.thin.respond(around, span, network, out)

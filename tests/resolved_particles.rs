@@ -154,3 +154,121 @@ fn a_ball_in_lean_oxygen_takes_its_shells_where_the_oxygen_runs_out_inside() {
         "{auto} for {all}"
     );
 }
+
+/// Two balls in hot surroundings that touch and see each other, of a material with or without shells; the gas carries nothing to speak of.
+const RADIANT: &str = r#"format = 1
+title = "Balls in hot surroundings"
+[time]
+end = "100 s"
+process_step = "100 s"
+checkpoint = { every = "20 s" }
+[mesh]
+box = { size = "40 20 20 mm", cells = [2, 1, 1] }
+[materials.ball]
+density = "2500 kg/m^3"
+heat_capacity = "900 J/kg/K"
+conductivity = "INSIDE W/m/K"
+emissivity = 0.9
+young = "10 MPa"
+poisson = 0.3
+inside = "radial"
+[materials.ball.radial]
+shells = 12
+temperature_error = "0.2 K"
+[[contacts]]
+between = ["ball", "ball"]
+restitution = 0.5
+friction = 0.3
+[gas]
+mixture = "air"
+initial = { temperature = "300 K", pressure = "1 atm" }
+[gas.patch.bottom]
+wall = { velocity = "no-slip", heat = "adiabatic" }
+[gas.patch.top]
+wall = { velocity = "no-slip", heat = "adiabatic" }
+[gas.patch.side]
+wall = { velocity = "no-slip", heat = "adiabatic" }
+[[particles]]
+name = "balls"
+material = "ball"
+diameter = "10 mm"
+motion = "frozen"
+place = { grid = { first = "10 10 10 mm", spacing = "9.95 1 1 mm", counts = [2, 1, 1] } }
+temperature = "300 K"
+[laws]
+drag = { law = "none" }
+heat_transfer = { law = "none" }
+conduction = { law = "batchelor-obrien" }
+radiation = { law = "view-factors", surroundings = "1400 K" }
+[coupling]
+mapping = "centroid"
+[output]
+every = "100 s"
+series_every = "1 s"
+[[quantities]]
+name = "kelvin"
+measure = { particles = "temperature", statistic = "mean" }
+"#;
+
+/// Surface temperature at the end, of balls of a conductivity in W/m/K; the ledger closes.
+fn radiant(folder: &Path, name: &str, conductivity: &str, set: &[String], words: &[&str]) -> f64 {
+    let file = folder.join(format!("{name}.toml"));
+    std::fs::write(&file, RADIANT.replace("INSIDE", conductivity)).unwrap();
+    let out = folder.join(name);
+    program::run(&file, &out, words, set);
+    let summary = Summary::read(&out).unwrap();
+    for name in ["energy", "energy_exchange"] {
+        let error = summary.ledger.lines[name].relative_error;
+        assert!(error < 1e-10, "{name}: {error}");
+    }
+    summary.quantities["kelvin"].value.unwrap()
+}
+
+fn steps(end: u32, step: u32) -> [String; 2] {
+    [
+        format!("time.end={end} s"),
+        format!("time.process_step={step} s"),
+    ]
+}
+
+#[test]
+fn shells_that_radiate_and_touch_heat_alike_in_short_and_long_windows() {
+    let folder = tempfile::tempdir().unwrap();
+    // Largest errors in K of windows of 5, 10 and 20 s in the first 20 s, in which surfaces rise by 800 K, and of 10 and 100 s in 100 s.
+    for (conductivity, begins, ends) in [
+        ("1", [1.0, 3.0, 6.0], [1.0, 10.0]),
+        ("50", [2.0, 6.0, 20.0], [1.0, 30.0]),
+    ] {
+        let at = |end: u32, step: u32| {
+            let name = format!("{conductivity}-{end}-{step}");
+            radiant(folder.path(), &name, conductivity, &steps(end, step), &[])
+        };
+        for (end, windows, most) in [
+            (20, &[5, 10, 20][..], &begins[..]),
+            (100, &[10, 100], &ends),
+        ] {
+            let fine = at(end, 1);
+            for (step, most) in windows.iter().zip(most) {
+                let found = at(end, *step);
+                println!("{conductivity}, {end} s by {step} s: {found} {fine}");
+                assert!((found - fine).abs() < *most, "{found} {fine}");
+            }
+        }
+    }
+}
+
+#[test]
+fn radiating_shells_have_the_same_bits_on_one_thread_and_after_they_resume() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str, words: &[&str]| radiant(folder.path(), name, "1", &steps(100, 10), words);
+    let two = at("two", &["--threads", "2"]);
+    let one = at("one", &["--threads", "1"]);
+    assert_eq!(one.to_bits(), two.to_bits());
+    let half = radiant(folder.path(), "half", "1", &steps(40, 10), &[]);
+    assert!(half < one);
+    let case = folder.path().join("whole.toml");
+    std::fs::write(&case, RADIANT.replace("INSIDE", "1")).unwrap();
+    killed::resumes_to_the_same_bits(folder.path(), &[50, 120], |out| {
+        program::command(&case, out, &[], &steps(2000, 1))
+    });
+}

@@ -226,6 +226,7 @@ impl HeatBodies {
         SurfaceLine {
             conductance,
             temperature: kelvin + (heat - stored) / conductance,
+            stored: 0.0,
         }
     }
 

@@ -13,7 +13,8 @@ pub const DRAG_CARRY: &str = "drag_carry";
 /// Name of the line that is no error either: see [`Ledger::prescribed_heat`].
 pub const PRESCRIBED_HEAT: &str = "prescribed_heat";
 
-/// Of what all elements move, the share below which an element does not take part: what the balances may leave open.
+/// Of what all lines of a unit move, the share below which a line does not take part, as of what all elements move: what the
+/// balances may leave open.
 const TAKES_PART: f64 = 1e-10;
 
 /// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
@@ -158,6 +159,18 @@ impl Ledger {
         lines
     }
 
+    /// The relative error of a line of a unit. One that does not take part, so that all it holds is round-off of what the others
+    /// of its unit move, is measured against the largest of them.
+    pub fn relative_error_in(&self, unit: &str, line: &BalanceLine) -> f64 {
+        let all = self.lines().into_iter();
+        let own = all.filter(|(_, other, _)| *other == unit);
+        let largest = own.fold(0.0, |most: f64, (.., one)| most.max(one.throughput));
+        match line.throughput < TAKES_PART * largest {
+            true => line.error / largest,
+            false => line.relative_error(),
+        }
+    }
+
     /// The relative error of an element's line. An element that does not take part, so that all its line holds is
     /// round-off of what the others move, is measured against what all elements move.
     pub fn relative_error_of(&self, element: &BalanceLine) -> f64 {
@@ -198,6 +211,26 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_of_nothing_is_measured_against_those_of_its_unit() {
+        let line = |error: f64, throughput: f64| BalanceLine {
+            drift: error,
+            error,
+            throughput,
+        };
+        let ledger = Ledger {
+            mass: line(1e-18, 2.0),
+            energy: line(1e-9, 5.0),
+            particle_mass: line(6e-32, 6e-32),
+            ..Ledger::default()
+        };
+        assert_eq!(ledger.relative_error_in("kg", &ledger.particle_mass), 3e-32);
+        assert_eq!(ledger.relative_error_in("kg", &ledger.mass), 5e-19);
+        assert_eq!(ledger.relative_error_in("J", &ledger.energy), 2e-10);
+        let trace = line(1e-6, 1e-6);
+        assert_eq!(ledger.relative_error_in("kg", &trace), 1.0);
+    }
 
     #[test]
     fn an_element_that_does_not_take_part_is_measured_against_those_that_do() {

@@ -8,8 +8,8 @@ mod error;
 mod merged_column;
 
 use calcine_interior::{
-    At, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
-    TEMPERATURE, Tally, Transfer, without,
+    At, Channel, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    SurfaceMean, Surroundings, TEMPERATURE, Tally, Transfer, without,
 };
 use calcine_physics::film::FilmCoefficient;
 use calcine_physics::thermo::Element;
@@ -59,6 +59,7 @@ struct Member {
 struct Work {
     inputs: [Vec<f64>; 6],
     films: Vec<FilmCoefficient>,
+    network: Vec<NetworkHeat>,
     rates: Vec<f64>,
     surface: Vec<SurfaceLine>,
     lines: GasLines,
@@ -256,7 +257,7 @@ impl ParticleModels {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ParticleModelError> {
         let (count, id) = (self.places.len(), &self.id);
@@ -270,10 +271,9 @@ impl ParticleModels {
             ..
         } in &mut self.members
         {
-            let [first, rest @ ..] = &mut work.inputs;
+            let [_, rest @ ..] = &mut work.inputs;
             let own = gathered(rows, count, around, (rest, &mut work.films));
-            let mut buffer = std::mem::take(first);
-            let network = gather(rows, count, network, &mut buffer);
+            let network = gather(rows, count, network, &mut work.network);
             let lines = &mut work.lines;
             lines.reset(rows.len(), channels.len());
             let done = model.respond(&own, span, network, lines);
@@ -291,10 +291,16 @@ impl ParticleModels {
                     }
                 }
             }
-            work.inputs[0] = buffer;
             done.map_err(|cause| named(cause, rows, id))?;
         }
         Ok(())
+    }
+
+    /// Means of the surfaces of all rows in the last attempt; see [`ParticleModel::surface_mean`].
+    pub fn surface_means(&self, out: &mut Vec<Option<SurfaceMean>>) {
+        out.clear();
+        let rows = self.places.iter();
+        out.extend(rows.map(|&(model, own)| self.members[model].model.surface_mean(own)));
     }
 
     /// Lowers the rates of all channels to what the particles hold; see [`ParticleModel::limit`].

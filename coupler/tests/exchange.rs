@@ -7,7 +7,7 @@
 use calcine_coupler::closures::CouplingCoefficients;
 use calcine_coupler::exchange::{Exchange, ExchangeInputs};
 use calcine_coupler::interior::{
-    At, GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Thin, Transfer,
+    At, GasLines, NetworkHeat, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Thin, Transfer,
 };
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
@@ -218,7 +218,8 @@ fn attempts_from(
             end: 0.0,
         };
         lines.reset(2, 0);
-        thin.respond(&around, span, &[0.0; 2], &mut lines).unwrap();
+        let alone = [NetworkHeat::default(); 2];
+        thin.respond(&around, span, &alone, &mut lines).unwrap();
         exchange.conductance.clone_from(&lines.conductance);
         let temperature = &lines.temperature;
         exchange.linearise(&inputs, temperature);

@@ -1,4 +1,4 @@
-//! How fast contacts conduct against the window: the error of implicit steps between particles.
+//! How fast contacts conduct against the window: the error of steps between particles.
 
 use calcine_coupler::contacts::touching;
 use calcine_coupler::periodicity::Periodicity;
@@ -7,7 +7,7 @@ use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::model::{Case, ConductionArea};
-use super::splitting::{STEP_ERROR, WARNING, shorter};
+use super::splitting::{WARNING, network_error, shorter};
 use super::units::short3;
 
 /// The particle that its contacts change fastest at the start.
@@ -16,7 +16,7 @@ pub(super) struct FastestContact {
     id: u64,
     /// Index of its population.
     population: usize,
-    /// Error of implicit steps in shares of the difference to its neighbours (docs/theory.md, TSM-8).
+    /// Error of steps in shares of the difference to its neighbours (docs/theory.md, TSM-8).
     error: f64,
 }
 
@@ -62,7 +62,7 @@ impl FastestContact {
             }
             let capacity = material(row).heat_capacity.at(population.temperature);
             let mass = sphere::mass(setup.radius[row], setup.density[row]);
-            let error = STEP_ERROR * sum / (mass * capacity) * span;
+            let error = network_error(sum / (mass * capacity) * span);
             (error > 0.0).then_some((row, error))
         };
         let rates = sums.iter().enumerate().filter_map(rate);
@@ -81,7 +81,7 @@ impl FastestContact {
             false => "",
         };
         format!(
-            "conduction     0.18 sum(G) AF dt/(m c), error through contacts, is {:.2e} at most{above}",
+            "conduction     0.03 (sum(G) AF dt/(m c))^2, error through contacts, is {:.2e} at most{above}",
             self.error
         )
     }
@@ -90,7 +90,7 @@ impl FastestContact {
     pub(super) fn warning(&self, case: &Case) -> Option<String> {
         (self.error > WARNING).then(|| {
             format!(
-                "0.18 sum(G) AF dt/(m c) of particle {} of `{}` is {}, above {WARNING}: its contacts conduct so well that within a window its \
+                "0.03 (sum(G) AF dt/(m c))^2 of particle {} of `{}` is {}, above {WARNING}: its contacts conduct so well that within a window its \
                  temperature comes that far towards those of its neighbours, with an error of about this share of their difference; {}",
                 self.id,
                 case.particles[self.population].name,

@@ -1,16 +1,16 @@
-//! What `check` says of particles with shells: how far reactions outrun the pores, and what they take of memory.
+//! What `check` says of particles with shells: how far reactions outrun the pores, whether these are likely, and what they take of memory.
 
 use std::f64::consts::PI;
 
-use calcine_coupler::interior::reacting::{Rate, Reaction};
+use calcine_coupler::interior::reacting::{Rate, Reaction, SizeChange};
 use calcine_coupler::physics::gas::GAS_CONSTANT;
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::physics::pores::knudsen;
+use calcine_coupler::physics::pores::{Permeability, knudsen};
 use calcine_coupler::physics::sphere;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasPatch;
 
-use super::model::{Case, Inside, Population, SizeLaw};
+use super::model::{Case, Inside, MaterialSpec, Population};
 use super::units::short3;
 
 /// Lines of `check` about a population.
@@ -58,13 +58,14 @@ pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
     all
 }
 
-/// Reactions whose solids would fill a particle before what they use up is gone.
+/// Reactions whose solids would fill a particle before what they use up is gone, and pores that are not likely meant.
 pub(super) fn warnings(case: &Case) -> Vec<String> {
     let materials = case.materials.iter().enumerate();
     let resolved = materials.filter(|(_, one)| one.inside != Inside::Thin);
     let reactions = &case.chemistry.reactions;
+    let mut all = unlikely_pores(case);
     let each = resolved.flat_map(|(m, _)| reactions.iter().map(move |one| (m, one)));
-    each.filter_map(|(material, reaction)| {
+    all.extend(each.filter_map(|(material, reaction)| {
         let full = closing(case, material, reaction)?;
         Some(format!(
             "`{}` makes solids that take more room than what it uses up: in `{}` the pores are full at a conversion of {}, where gas \
@@ -73,9 +74,72 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
             case.materials[material].name,
             short3(full)
         ))
-    })
-    .collect()
+    }));
+    all
 }
+
+/// Pores as wide as particles, and permeabilities far from those of such pores.
+fn unlikely_pores(case: &Case) -> Vec<String> {
+    let mut all = Vec::new();
+    for population in &case.particles {
+        let material = &case.materials[population.material];
+        let Some(pores) = material.radial.pore_diameter else {
+            continue;
+        };
+        if material.inside == Inside::Thin {
+            continue;
+        }
+        let smallest = population.sizes.smallest();
+        if pores > WIDE * smallest {
+            all.push(format!(
+                "`pore_diameter` of `{}` is {} m, where the smallest particle of `{}` has {} m: pores are far narrower than the particle they                  are in, 0.01 to 100 um as a rule; check its unit",
+                material.name,
+                short3(pores),
+                population.name,
+                short3(smallest)
+            ));
+        }
+        all.extend(unlikely_permeability(material, pores));
+    }
+    all.dedup();
+    all
+}
+
+/// Straight pores of a diameter d have a permeability of d²/32 at most.
+fn unlikely_permeability(material: &MaterialSpec, pores: f64) -> Option<String> {
+    let (key, value, found) = match material.radial.permeability? {
+        Permeability::Constant(value) => ("permeability.value", value, value),
+        law @ Permeability::KozenyCarman(grains) => {
+            ("permeability.grain_diameter", grains, law.of(HALF_OPEN))
+        }
+    };
+    let straight = pores * pores / 32.0;
+    let [low, high] = [TIGHT, OPEN].map(|by| by * straight);
+    let (place, other) = if found > high {
+        ("above", high)
+    } else if found < low {
+        ("below", low)
+    } else {
+        return None;
+    };
+    let unit = match material.radial.permeability? {
+        Permeability::Constant(_) => "m^2",
+        Permeability::KozenyCarman(_) => "m",
+    };
+    Some(format!(
+        "`{key}` of `{}` is {value:.1e} {unit}, a permeability of {found:.1e} m^2, {place} {other:.1e} m^2: straight pores of the stated          `pore_diameter` of {} m have d^2/32 = {straight:.1e} m^2; check both",
+        material.name,
+        short3(pores)
+    ))
+}
+
+/// Diameter of pores over that of a particle above which it is not likely meant.
+const WIDE: f64 = 0.1;
+/// Permeability over that of straight pores: below and above it is not likely meant.
+const TIGHT: f64 = 1e-6;
+const OPEN: f64 = 100.0;
+/// Porosity at which a law of grains is looked at.
+const HALF_OPEN: f64 = 0.5;
 
 /// The conversion at which the solids of a reaction fill the particles of a material, from its start and by the reaction alone; `None`
 /// where some room stays.
@@ -100,10 +164,10 @@ fn closing(case: &Case, material: usize, reaction: &Reaction) -> Option<f64> {
         .map(|(y, rho)| spec.density * y / rho)
         .sum();
     let fills = sum(&|s| molar_mass(s) / true_density[s]);
-    let grows = match &spec.size {
-        SizeLaw::Constant => 0.0,
-        SizeLaw::ConstantDensity { .. } => sum(&molar_mass) / spec.density,
-        SizeLaw::Densities { .. } => return None,
+    let volumes = case.chemistry.sizes.get(material);
+    let grows = match volumes.and_then(SizeChange::volumes) {
+        None => 0.0,
+        Some(each) => sum(&|s| each[s]),
     };
     // filled + X fills = 1 + X grows.
     let full = (1.0 - filled) / (fills - grows);
@@ -192,6 +256,23 @@ mod tests {
 
     /// Lime of a true density of 1300 kg/m³ takes 1.052 of the volume of the limestone that it is made of, of whose volume 0.1 are
     /// pores: 0.1/(1.0516 − 0.9000) = 0.659.
+    #[test]
+    fn pores_that_are_not_likely_meant_are_told() {
+        let told = |key: &str, value: &str| {
+            let set = format!("materials.limestone.radial.{key}={value}");
+            let all = warned("porous-stones", &[&set]);
+            let about =
+                |one: &String| one.contains("pore_diameter") || one.contains("permeability");
+            all.into_iter().filter(about).collect::<Vec<String>>()
+        };
+        assert_eq!(told("pore_diameter", "2 um"), Vec::<String>::new());
+        let wide = told("pore_diameter", "1 m");
+        assert!(wide[0].contains("is 1 m, where the smallest"), "{wide:?}");
+        assert!(wide[1].contains("below"), "{wide:?}");
+        let open = told("permeability.grain_diameter", "1 m");
+        assert!(open[0].contains("above"), "{open:?}");
+    }
+
     #[test]
     fn pores_that_solids_fill_are_told() {
         let told = |density: &str| {

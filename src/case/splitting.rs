@@ -20,6 +20,15 @@ pub(super) const WARNING: f64 = 0.1;
 /// Largest error of implicit Euler steps after a jump in shares of it, over the step times the rate: 1/(2 e) (docs/theory.md, TSM-8).
 pub(super) const STEP_ERROR: f64 = 0.184;
 
+/// Largest error of steps by mean temperatures after a jump in shares of it, over the square of the step times the rate: 1/(12 e), of a
+/// particle between neighbours that stay (docs/theory.md, TSM-8).
+const MEAN_STEP_ERROR: f64 = 0.031;
+
+/// Largest error in shares of a difference to what a particle radiates or conducts to, of a window times the rate.
+pub(super) fn network_error(times_rate: f64) -> f64 {
+    (MEAN_STEP_ERROR * times_rate * times_rate).min(STEP_ERROR * times_rate)
+}
+
 /// Growth of the drag coefficient from rest to the terminal velocity above which it is told of.
 const GROWN: f64 = 1.5;
 
@@ -56,8 +65,10 @@ pub(super) struct Splitting<'a> {
     ratio: f64,
     /// Error of process storage in shares of the span of temperatures.
     error: f64,
-    /// The same of radiation in black surroundings, at the hottest that the case states; `None` where there is none.
+    /// Window over the time of radiation to black surroundings, at the hottest that the case states; `None` where there is none.
     radiation: Option<f64>,
+    /// True where contacts conduct, which may be faster than radiation.
+    conducts: bool,
     /// Window over the drag's own time, where there is drag.
     drag: Option<f64>,
     /// Drag coefficient at the terminal velocity over that at rest, and the window over m/K there; `None` where nothing falls.
@@ -114,8 +125,9 @@ impl<'a> Splitting<'a> {
             radiation: radiation(case, population).map(|h| {
                 let area = PI * d * d;
                 let heat = material.density * volume * solid_capacity;
-                STEP_ERROR * h * area / heat * factor * window
+                h * area / heat * factor * window
             }),
+            conducts: case.laws.conducts(),
             drag,
             fall,
             biot,
@@ -153,11 +165,26 @@ impl<'a> Splitting<'a> {
                 ),
             },
         ];
-        lines.extend(self.radiation.map(|error| {
-            format!(
-                "0.18 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
-                above(error)
-            )
+        // Shells radiate by steps of their own, to what they see at its mean over the window.
+        lines.extend(self.radiation.map(|times_rate| match self.resolved {
+            true => {
+                format!("h_r A AF dt/(m c), window over the time of radiation {times_rate:.2e}")
+            }
+            // Particles that hold each other by fast contacts follow what they radiate to together, by implicit steps.
+            false if self.conducts => {
+                let error = STEP_ERROR * times_rate;
+                format!(
+                    "0.18 h_r A AF dt/(m c), error of radiation           {error:.2e}{}",
+                    above(error)
+                )
+            }
+            false => {
+                let error = network_error(times_rate);
+                format!(
+                    "0.03 (h_r A AF dt/(m c))^2, error of radiation       {error:.2e}{}",
+                    above(error)
+                )
+            }
         }));
         lines.extend(
             ranges::of(case, &self.local, self.diameter)

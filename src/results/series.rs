@@ -234,7 +234,7 @@ pub(super) fn row(
     ]);
     let ledger = moment.ledger;
     let lines = ledger.lines().into_iter();
-    let lines = lines.map(|(_, _, line)| (line.relative_error(), line));
+    let lines = lines.map(|(_, unit, line)| (ledger.relative_error_in(unit, &line), line));
     let elements = ledger.elements.iter();
     let elements = elements.map(|(_, line)| (ledger.relative_error_of(line), *line));
     for (relative_error, line) in lines.chain(elements) {

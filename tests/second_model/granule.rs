@@ -2,9 +2,9 @@
 //! surface and bound. A model of particles that nothing but this test knows.
 
 use calcine_coupler::interior::{
-    At, Bodies, Channel, ColumnKind, ColumnRole, GasLines, Inventory, ModelError, Newcomer,
-    ParticleModel, Ragged, StateColumn, SurfaceLine, Surroundings, TEMPERATURE, Tally, Transfer,
-    without,
+    At, Bodies, Channel, ColumnKind, ColumnRole, GasLines, Inventory, ModelError, NetworkHeat,
+    Newcomer, ParticleModel, Ragged, StateColumn, SurfaceLine, Surroundings, TEMPERATURE, Tally,
+    Transfer, without,
 };
 use calcine_coupler::physics::thermo::{Element, Mixture, Species};
 
@@ -236,6 +236,7 @@ impl ParticleModel for Granules {
             *line = SurfaceLine {
                 conductance,
                 temperature: drive / conductance,
+                stored: 0.0,
             };
         }
         Ok(())
@@ -245,14 +246,14 @@ impl ParticleModel for Granules {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
         for (p, given) in network.iter().enumerate() {
             let ha = around.conductance[p];
             let (own, drive) = self.skin(p, [0.0, 0.0], span);
             out.conductance[p] = ha * own / (own + ha);
-            out.temperature[p] = (drive + given) / own;
+            out.temperature[p] = (drive + given.mean) / own;
             out.released[p] = self.committed[p].skin();
             let state = &self.committed[p];
             let wet = f64::from(state.water[0] > 0.0);

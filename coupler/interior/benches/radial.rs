@@ -11,7 +11,8 @@ use calcine_interior::radial::{
 };
 use calcine_interior::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use calcine_interior::{
-    ColumnKind, GasLines, Newcomer, ParticleModel, Ragged, Surroundings, TEMPERATURE, Transfer,
+    ColumnKind, GasLines, NetworkHeat, Newcomer, ParticleModel, Ragged, Surroundings, TEMPERATURE,
+    Transfer,
 };
 use calcine_physics::conduction::Conductivity;
 use calcine_physics::film::{FilmCoefficient, FilmTemperature, FilmTheory, StefanFlow};
@@ -135,7 +136,8 @@ impl Gas {
         let mut lines = GasLines::default();
         lines.reset(count, 2);
         let network = vec![0.0; count];
-        model.respond(&around, span, &network, &mut lines).unwrap();
+        let alone = vec![NetworkHeat::default(); count];
+        model.respond(&around, span, &alone, &mut lines).unwrap();
         if commit {
             let pairs = (0..count)
                 .map(|p| lines.conductance[p] * (self.temperature[p] - lines.temperature[p]));

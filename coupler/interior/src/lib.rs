@@ -12,8 +12,8 @@ mod thin;
 pub use column::{ColumnKind, ColumnRole, ColumnShape, ColumnValues, Ragged, StateColumn};
 pub use error::ModelError;
 pub use model::{
-    At, Bodies, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
-    Tally, Transfer,
+    At, Bodies, Channel, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    SurfaceMean, SurfaceNetwork, Surroundings, Tally, Transfer,
 };
 pub use network::{
     ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours, NetworkBodies,

@@ -8,13 +8,16 @@
 //!
 //! 1. [`ParticleModel::surface`]: what the particle takes from the network, as a line over its surface temperature.
 //!    The network is solved with these lines; where they bend, it asks again at the temperatures it found.
-//! 2. [`ParticleModel::respond`]: with the network's heat given, what the particle exchanges with the gas, as lines.
+//! 2. [`ParticleModel::respond`]: with the network's heat given, what the particle exchanges with the gas, as lines. A
+//!    model that takes steps of its own within the span follows what its surface is beside instead, and says the means
+//!    of its surface ([`ParticleModel::surface_mean`]), from which that heat is booked.
 //! 3. The gas takes the lines; 1 and 2 are repeated with the gas of the last attempt until both agree.
 //! 4. [`ParticleModel::limit`]: what the gas made of the channels, limited to what the particle holds. The gas takes
 //!    that once more as fixed sources.
 //! 5. [`ParticleModel::settle`]: what was exchanged is booked, whatever the lines were: mass, elements and energy close.
 
 use calcine_physics::film::{FilmCoefficient, FilmTheory};
+use calcine_physics::radiation::STEFAN_BOLTZMANN;
 use calcine_physics::thermo::Element;
 
 use crate::column::{Ragged, StateColumn};
@@ -48,8 +51,64 @@ pub struct Surroundings<'a> {
 pub struct SurfaceLine {
     /// k in W/K, positive; infinite where heat does not move the temperature.
     pub conductance: f64,
-    /// T_free in K: the surface temperature at the end of the span without a network.
+    /// T_free in K: the surface temperature without a network.
     pub temperature: f64,
+    /// What of k is heat that is stored over the span, in W/K, where T is the temperature at its end: the network then finds
+    /// the mean from that at its start. Zero where T is the mean, or is not moved.
+    pub stored: f64,
+}
+
+/// Heat from the network into a particle over a span.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NetworkHeat {
+    /// Its mean in W, as the network found it.
+    pub mean: f64,
+    /// What the surface is beside meanwhile, for models that follow it by steps of their own; `None` of a heat that does not
+    /// follow the surface.
+    pub beside: Option<SurfaceNetwork>,
+}
+
+impl NetworkHeat {
+    /// A heat in W that does not follow the surface.
+    pub fn constant(mean: f64) -> Self {
+        Self { mean, beside: None }
+    }
+}
+
+/// Contacts and views of a surface, with what is beyond them at its mean over a span: the heat into a surface of the
+/// temperature T is Σ G_j (T_j − T) + σ Σ S_j (T_j⁴ − T⁴).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceNetwork {
+    /// Σ G_j in W/K.
+    pub conductance: f64,
+    /// Σ G_j T_j in W.
+    pub conducted: f64,
+    /// Σ S_j in m², of what is emitted and absorbed.
+    pub area: f64,
+    /// Σ S_j T_j⁴ in m² K⁴.
+    pub seen: f64,
+}
+
+impl SurfaceNetwork {
+    /// Heat in W into a surface of the temperature in K, and of its fourth power in K⁴: of both at a time, or of their means.
+    pub fn heat(&self, temperature: f64, fourth_power: f64) -> f64 {
+        self.conducted - self.conductance * temperature
+            + STEFAN_BOLTZMANN * (self.seen - self.area * fourth_power)
+    }
+
+    /// By how much that falls with the temperature in K, in W/K.
+    pub fn slope(&self, temperature: f64) -> f64 {
+        self.conductance + 4.0 * STEFAN_BOLTZMANN * self.area * temperature.powi(3)
+    }
+}
+
+/// Means over the span of the last attempt of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceMean {
+    /// Of its temperature, in K.
+    pub temperature: f64,
+    /// Of the fourth power of that, in K⁴.
+    pub fourth_power: f64,
 }
 
 impl SurfaceLine {
@@ -58,6 +117,7 @@ impl SurfaceLine {
         Self {
             conductance: f64::INFINITY,
             temperature,
+            stored: 0.0,
         }
     }
 
@@ -68,6 +128,7 @@ impl SurfaceLine {
         Self {
             conductance: all,
             temperature: from + conductance * (gas - from) / all,
+            stored,
         }
     }
 }
@@ -317,15 +378,22 @@ pub trait ParticleModel: Send + Sync {
         out: &mut [SurfaceLine],
     ) -> Result<(), ModelError>;
 
-    /// Fills what each particle exchanges with the gas over a span in s, with the network's mean heat into each
-    /// given in W; `out` has room for all rows and channels.
+    /// Fills what each particle exchanges with the gas over a span in s, with the network's heat into each given; `out` has
+    /// room for all rows and channels.
     fn respond(
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError>;
+
+    /// Means of the surface of a row in the last attempt, of models that follow what it is beside by steps of their own; `None`
+    /// of those that take the network's mean heat.
+    fn surface_mean(&self, row: usize) -> Option<SurfaceMean> {
+        let _ = row;
+        None
+    }
 
     /// Lowers rates of channels in units/s, channel by channel within each row, to what the particles hold over a
     /// span in s.

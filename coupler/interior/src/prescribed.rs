@@ -6,8 +6,8 @@ use calcine_physics::solid::HeatCapacity;
 use crate::column::{Ragged, StateColumn};
 use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings, Tally,
-    Transfer,
+    At, Bodies, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
 };
 use crate::thin::Thin;
 
@@ -90,7 +90,7 @@ impl ParticleModel for PrescribedTemperature {
         &mut self,
         around: &Surroundings<'_>,
         _span: f64,
-        _network: &[f64],
+        _network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
         self.set_target(around);
@@ -187,7 +187,8 @@ mod tests {
         for (end, before, after) in [(5.0, 300.0, 400.0), (10.0, 400.0, 500.0)] {
             lines.reset(1, 0);
             let gas = around(&[900.0], &[0.25], end);
-            held.respond(&gas, span, &[0.0], &mut lines).unwrap();
+            held.respond(&gas, span, &[NetworkHeat::default()], &mut lines)
+                .unwrap();
             assert_eq!((lines.conductance[0], lines.temperature[0]), (0.25, after));
             let (heat, network) = (0.25 * (900.0 - after), -3.0);
             let took = Transfer {
@@ -245,10 +246,10 @@ mod tests {
             Ok::<(), ModelError>(())
         });
         assert_eq!(solved.unwrap(), crate::NetworkOutcome::Settled);
-        // 2 k a of the contact, a = √(R/2 · δ): 2 (T − 300) = G (450 − T).
+        // 2 k a of the contact, a = √(R/2 · δ), and 2 T' = G (450 − T) from 300 K on.
         let conductance = 2.0 * 100.0 * (0.5e-3_f64 * 1e-5).sqrt();
-        let other = (2.0 * 300.0 + conductance * 450.0) / (2.0 + conductance);
-        let flow = conductance * (450.0 - other);
+        let other = 450.0 - 150.0 * (-conductance / 2.0).exp();
+        let flow = 2.0 * (other - 300.0);
         assert!((network.heat[1] / flow - 1.0).abs() < 1e-10);
         assert_eq!(network.heat[0], -network.heat[1]);
     }

@@ -5,8 +5,8 @@ use calcine_physics::solid::HeatCapacity;
 use crate::column::{ColumnRole, Ragged, StateColumn};
 use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings, Tally,
-    Transfer,
+    At, Bodies, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
 };
 use crate::without;
 
@@ -143,15 +143,16 @@ impl ParticleModel for Thin {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
         for (p, &ha) in around.conductance.iter().enumerate() {
             out.conductance[p] = ha / (1.0 + ha * span / self.heat_capacity[p]);
-            out.temperature[p] = if network[p] == 0.0 {
+            let given = network[p].mean;
+            out.temperature[p] = if given == 0.0 {
                 self.committed[p]
             } else {
-                self.moved(p, network[p] * span)
+                self.moved(p, given * span)
             };
             out.released[p] = self.committed[p];
         }
@@ -286,7 +287,8 @@ mod tests {
         assert!((surface[0].temperature - expected).abs() < 1e-12);
         assert!((surface[0].conductance - 0.75).abs() < 1e-15);
         lines.reset(1, 0);
-        thin.respond(&around, span, &[0.0], &mut lines).unwrap();
+        let alone = [NetworkHeat::default()];
+        thin.respond(&around, span, &alone, &mut lines).unwrap();
         settle(
             &mut thin,
             &[lines.conductance[0] * (400.0 - lines.temperature[0])],
@@ -338,7 +340,8 @@ mod tests {
         let mut lines = GasLines::default();
         lines.reset(1, 0);
         let stiff = around(&[0.0], &[1e12]);
-        thin.respond(&stiff, 1.0, &[0.0], &mut lines).unwrap();
+        let alone = [NetworkHeat::default()];
+        thin.respond(&stiff, 1.0, &alone, &mut lines).unwrap();
         let expected = 2.0 * 600.0;
         assert!(
             (lines.conductance[0] / expected - 1.0).abs() < 1e-8,

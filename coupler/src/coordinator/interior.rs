@@ -2,8 +2,8 @@
 //! with its heat the models say what they exchange with the gas.
 
 use calcine_interior::{
-    GasLines, HeatNetwork, Inventory, NetworkBodies, NetworkOutcome, NetworkSurroundings,
-    RowImbalance, Surroundings, Tally, Transfer,
+    GasLines, HeatNetwork, Inventory, NetworkBodies, NetworkHeat, NetworkOutcome,
+    NetworkSurroundings, RowImbalance, SurfaceMean, Surroundings, Tally, Transfer,
 };
 
 use super::error::RunError;
@@ -14,6 +14,11 @@ use crate::part::ParticleFields;
 use crate::paths::Paths;
 use crate::time::Window;
 
+/// Share of the heat of the network that particles which follow it by steps of their own may not have taken, and how often it is
+/// solved in an attempt at most.
+const APART: f64 = 1e-3;
+const MOST_ROUNDS: u32 = 4;
+
 /// The models of all particles, and the network between them.
 pub(super) struct InteriorStage {
     pub models: ParticleModels,
@@ -23,6 +28,9 @@ pub(super) struct InteriorStage {
     pub(super) paths: Paths,
     /// Heat from the network into each particle in W, of the attempt.
     heat: Vec<f64>,
+    /// The same as the models are told of it, and the means of the surfaces of those that followed it by steps of their own.
+    told: Vec<NetworkHeat>,
+    means: Vec<Option<SurfaceMean>>,
     /// What particles exchange with the gas.
     pub lines: GasLines,
     /// Masses in kg at the last commit.
@@ -48,6 +56,8 @@ impl InteriorStage {
     ) -> Self {
         let mut stage = Self {
             heat: vec![0.0; particles.len()],
+            told: Vec::new(),
+            means: Vec::new(),
             models,
             network,
             substance,
@@ -104,7 +114,8 @@ impl InteriorStage {
 
     /// An attempt with the gas as it is: surface, network, respond. The network takes the heat that reactions set free
     /// from the attempt before; a first attempt has none, and is done `rounds` times: that heat would leave a window
-    /// late. Bodies get their temperatures of the attempt.
+    /// late. Where particles follow the network by steps of their own, it is repeated until they came to what the others took
+    /// them to be. Bodies get their temperatures of the attempt.
     pub fn respond(
         &mut self,
         around: &Surroundings<'_>,
@@ -116,16 +127,33 @@ impl InteriorStage {
             window: window.index,
             cause,
         };
-        for _ in 0..rounds {
+        for round in 1.. {
             self.conduct(around, (gas_conductivity, &mut *bodies), window)
                 .map_err(failed)?;
             let span = window.span.process.seconds();
             let lines = &mut self.lines;
-            let done = self.models.respond(around, span, &self.heat, lines);
+            let done = self.models.respond(around, span, &self.told, lines);
             done.map_err(failed)?;
+            let apart = self.book_means();
             self.stiffen(around);
+            tracing::trace!(window = window.index, round, apart, "network");
+            if round >= rounds && (apart <= APART || round >= MOST_ROUNDS) {
+                break;
+            }
         }
         Ok(())
+    }
+
+    /// Books the heat of the network by what particles that followed it came to; how much of it they did not take, as a share. That is
+    /// owed to them.
+    fn book_means(&mut self) -> f64 {
+        let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
+            return 0.0;
+        };
+        self.models.surface_means(&mut self.means);
+        let apart = network.book_means(&self.means, &self.told);
+        self.heat.copy_from_slice(&network.heat);
+        apart
     }
 
     /// Tells the gas of particles that a network leads to that they do not follow it as alone, through the heat of the gas as it
@@ -156,6 +184,10 @@ impl InteriorStage {
         let [span, end] = window.process_span();
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             bodies.take(None, [span, end]);
+            let heat = self.heat.iter();
+            self.told.clear();
+            self.told
+                .extend(heat.map(|heat| NetworkHeat::constant(*heat)));
             return Ok(());
         };
         let (reservoirs, of) = self.paths.reservoirs(end, bodies.told());
@@ -174,6 +206,7 @@ impl InteriorStage {
             models.surface(around, span, at, lines)
         })?;
         self.heat.copy_from_slice(&network.heat);
+        network.told(&mut self.told);
         bodies.take(Some(&network.body_temperature), [span, end]);
         Ok(())
     }

@@ -53,19 +53,26 @@ pub(in crate::case) fn tuning(
     let reactions = reactions(root);
     let mut read = Targets::read(root, folder, of);
     let measured = WholeLoss::of(&read.curves);
-    let (reactions, laws) = reactions?;
+    let Reactions {
+        reactions,
+        laws,
+        complete,
+    } = reactions?;
     let crucible = (of? == TunedModel::Lumped).then_some((settings?, numbers?));
     let mut model = SampleSpec {
         crucible,
         reactions,
         laws,
     };
-    if read.curves.is_empty() {
+    let stated = model.reactions.iter().all(|one| !one.mass_loss.is_nan());
+    // What is wrong with the parameters is told beside what is wrong with curves and reactions.
+    let complete = complete
+        && !read.curves.is_empty()
+        && take_loss(root, &mut model, measured.map(|one| one.loss)).is_some();
+    let parameters = parameters(root, &known_parameters(&model));
+    if !complete {
         return None;
     }
-    let stated = model.reactions.iter().all(|one| !one.mass_loss.is_nan());
-    take_loss(root, &mut model, measured.map(|one| one.loss))?;
-    let parameters = parameters(root, &known_parameters(&model));
     let tuned = parameters
         .iter()
         .any(|one| one.name.ends_with("mass_loss") || one.name.ends_with("reactant"));
@@ -129,13 +136,20 @@ fn lumped_numbers(table: &TableReader<'_>) -> Vec<(&'static str, f64)> {
     numbers.collect()
 }
 
-type Reactions = (Vec<SampleReaction>, Vec<LawCandidate>);
+/// Reactions as far as they could be read, and the laws of the last one.
+struct Reactions {
+    reactions: Vec<SampleReaction>,
+    laws: Vec<LawCandidate>,
+    /// True where nothing is wrong with them.
+    complete: bool,
+}
 
+/// The reactions; `None` where they have no law, so that nothing can be said of parameters.
 fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
     let tables = root.tables("reactions");
     let several = tables.len() > 1;
     let (mut reactions, mut laws): (Vec<SampleReaction>, _) = (Vec::new(), Vec::new());
-    let mut complete = true;
+    let (mut complete, mut lawless) = (true, false);
     for table in &tables {
         let name = table.text("name").unwrap_or_default().to_owned();
         if several && name.is_empty() {
@@ -149,24 +163,32 @@ fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
             );
         }
         let own = candidates(table);
-        let number = |key: &str| table.number(key);
-        let made = (|| {
-            let first = own.first()?;
-            Some(SampleReaction {
-                name: if several { name } else { String::new() },
-                law: first.law,
-                law_numbers: first.numbers.clone(),
-                pre_exponential: number("pre_exponential")?,
-                activation_energy: number("activation_energy")?,
-                reactant: number("reactant")?,
-                mass_loss: if table.has("mass_loss") {
-                    number("mass_loss")?
-                } else {
-                    f64::NAN
-                },
-                enthalpy: number("reaction_enthalpy")?,
-            })
-        })();
+        let mut number = |key: &str| {
+            let found = table.number(key);
+            complete &= found.is_some();
+            found.unwrap_or(f64::NAN)
+        };
+        let [pre_exponential, activation_energy, reactant, enthalpy] = [
+            "pre_exponential",
+            "activation_energy",
+            "reactant",
+            "reaction_enthalpy",
+        ]
+        .map(&mut number);
+        let mass_loss = match table.has("mass_loss") {
+            true => number("mass_loss"),
+            false => f64::NAN,
+        };
+        let made = own.first().map(|first| SampleReaction {
+            name: if several { name } else { String::new() },
+            law: first.law,
+            law_numbers: first.numbers.clone(),
+            pre_exponential,
+            activation_energy,
+            reactant,
+            mass_loss,
+            enthalpy,
+        });
         table.finish();
         if several && own.len() > 1 {
             let help =
@@ -176,7 +198,7 @@ fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
         if several && !table.has("mass_loss") {
             table.missing("mass_loss");
         }
-        complete &= made.is_some();
+        lawless |= made.is_none();
         reactions.extend(made);
         laws = own;
     }
@@ -188,10 +210,12 @@ fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
         );
         root.fail("reactions", rule, "they are 1 at most");
     }
-    if tables.is_empty() {
-        return None;
-    }
-    complete.then_some((reactions, laws))
+    let some = !tables.is_empty() && !lawless;
+    some.then_some(Reactions {
+        reactions,
+        laws,
+        complete,
+    })
 }
 
 /// The laws that a reaction names, with the values of their numbers.

@@ -103,6 +103,9 @@ impl Targets {
     }
 }
 
+/// A curve, what its masses are relative to, and what is to be told of it.
+type ReadCurve = (TargetCurve, Option<MassAtStart>, Vec<String>);
+
 /// One `[[targets]]`.
 struct Target<'t, 'a> {
     table: &'t TableReader<'a>,
@@ -177,7 +180,7 @@ impl<'t, 'a> Target<'t, 'a> {
     }
 
     /// Each curve with what its masses are relative to and what is to be told of it.
-    fn curves(&self) -> Option<Vec<(TargetCurve, Option<MassAtStart>, Vec<String>)>> {
+    fn curves(&self) -> Option<Vec<ReadCurve>> {
         let path = self.path.as_ref()?;
         let runs = match read_curves(path, &self.file) {
             Ok(runs) => runs,

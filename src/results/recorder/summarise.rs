@@ -135,7 +135,13 @@ impl Recorder {
                     .ledger
                     .lines()
                     .into_iter()
-                    .map(|(name, unit, line)| (name.to_owned(), ledger_line(unit, line)))
+                    .map(|(name, unit, line)| {
+                        let told = LedgerLineSummary {
+                            relative_error: moment.ledger.relative_error_in(unit, &line),
+                            ..ledger_line(unit, line)
+                        };
+                        (name.to_owned(), told)
+                    })
                     .collect(),
                 elements: moment
                     .ledger

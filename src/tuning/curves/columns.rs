@@ -173,6 +173,49 @@ mod tests {
     use super::*;
 
     #[test]
+    fn headings_of_instruments_are_recognised() {
+        for (headings, column) in [
+            (
+                ["Time (min)", "Unsubtracted Weight (mg)", "T/degC"],
+                CurveColumn::Temperature,
+            ),
+            (
+                ["Time (min)", "Unsubtracted Weight (mg)", "T (C)"],
+                CurveColumn::Temperature,
+            ),
+            (
+                ["Time (min)", "T (deg C)", "Baseline Weight (mg)"],
+                CurveColumn::Temperature,
+            ),
+            (
+                ["Time (min)", "T/degC", "Unsubtracted Weight (mg)"],
+                CurveColumn::Mass,
+            ),
+        ] {
+            let sheet = Sheet {
+                headings: headings.map(str::to_owned).to_vec(),
+                units: Vec::new(),
+                rows: Vec::new(),
+                lines: Vec::new(),
+                heading_line: Some(1),
+            };
+            let found = find(Path::new("a.csv"), &sheet, column, &ColumnChoice::default());
+            let found = found.unwrap().unwrap();
+            assert_eq!(
+                found.place,
+                headings
+                    .iter()
+                    .position(|name| match column {
+                        CurveColumn::Mass => name.starts_with("Unsubtracted"),
+                        _ => name.starts_with("T/") || name.starts_with("T ("),
+                    })
+                    .unwrap(),
+                "{headings:?}"
+            );
+        }
+    }
+
+    #[test]
     fn headings_part_into_names_and_units() {
         for (heading, name, unit) in [
             ("Temp./°C", "Temp.", Some("°C")),
@@ -182,6 +225,14 @@ mod tests {
             ("Weight, %", "Weight", Some("%")),
             ("Time in s", "Time", Some("s")),
             ("DTG/(%/min)", "DTG/", Some("%/min")),
+            ("T/degC", "T", Some("degC")),
+            ("T (deg C)", "T", Some("deg C")),
+            ("T/deg C", "T", Some("deg C")),
+            (
+                "Unsubtracted Weight (mg)",
+                "Unsubtracted Weight",
+                Some("mg"),
+            ),
             ("Mass", "Mass", None),
             ("dm/dt", "dm/dt", None),
         ] {

@@ -7,18 +7,22 @@
 //! every iterate lies between the temperatures it starts from and those beside it, whatever the span, so
 //! that steps of process time may be as long as a case asks for.
 //!
+//! Temperatures of particles are means over the span: a thin particle on its way to what it is beside has its heat from that
+//! of the way, not of its end (`span_means`). Particles that follow the network by steps of their own say their means
+//! (`beside`).
+//!
 //! A grey surface gets a second node without heat capacity, its radiosity J = σ T_J⁴: views lead from one
 //! radiosity to the other, and A e/(1 − e) from the surface to its own. Their heat is booked where the views
 //! end, so that what a pair exchanges adds up to zero to the last bit.
 
+mod beside;
+mod contacts;
 mod neighbours;
 mod radiation;
 mod solver;
+mod span_means;
 
-use calcine_numerics::parallel::fill;
-use calcine_physics::conduction::{
-    Conduction, Conductivity, ContactArea, GasGap, SphereContact, SphereGap, Stiffness,
-};
+use calcine_physics::conduction::{Conduction, Conductivity, ContactArea, GasGap, Stiffness};
 use calcine_physics::radiation::conducted_share;
 
 pub use neighbours::{
@@ -27,6 +31,7 @@ pub use neighbours::{
 };
 use radiation::Radiation;
 use solver::{NetworkSolver, NetworkSystem};
+use span_means::SpanMeans;
 
 use crate::model::SurfaceLine;
 use crate::without;
@@ -96,6 +101,9 @@ pub struct HeatNetwork {
     pairs: Vec<NeighbourPair>,
     wall_touches: Vec<NeighbourWall>,
     radiation: Radiation,
+    /// By how much in K each surface radiates as a warmer one than its mean over the span, the fourth root of the mean of the
+    /// fourth powers, as it was in the last attempt; empty where none said so.
+    warmer: Vec<f64>,
     /// Heat into each particle from the others and from reservoirs in W.
     pub heat: Vec<f64>,
     /// Heat from each reservoir into the particles in W.
@@ -124,7 +132,14 @@ struct Work {
     sink_conductance: Vec<f64>,
     drive: Vec<f64>,
     temperature: Vec<f64>,
+    /// The same of surfaces that radiate as warmer ones.
+    seen: Vec<f64>,
     last: Vec<f64>,
+    means: SpanMeans,
+    /// How many of the bonds and links are contacts, and how many nodes are particles'.
+    solid: usize,
+    walled: usize,
+    nodes: usize,
     lines: Vec<SurfaceLine>,
     last_lines: Vec<SurfaceLine>,
 }
@@ -169,6 +184,7 @@ impl HeatNetwork {
             pairs: Vec::new(),
             wall_touches: Vec::new(),
             radiation: Radiation::default(),
+            warmer: Vec::new(),
             work: Work::default(),
         }
     }
@@ -185,6 +201,7 @@ impl HeatNetwork {
         without(&mut self.material, gone);
         self.material.extend(new.iter().map(|one| one.1));
         self.heat = vec![0.0; self.material.len()];
+        self.warmer.clear();
         self.pairs.clear();
         self.wall_touches.clear();
     }
@@ -193,6 +210,7 @@ impl HeatNetwork {
     pub fn begin(&mut self) {
         self.heat.fill(0.0);
         self.reservoir_heat.fill(0.0);
+        self.warmer.clear();
     }
 
     /// Takes up what the particles meet at their present places.
@@ -224,9 +242,10 @@ impl HeatNetwork {
         self.pairs.is_empty() && self.wall_touches.is_empty() && self.radiation.is_empty()
     }
 
-    /// Sets `heat` to that of an implicit step: surface temperatures T with
+    /// Sets `heat` to that of an implicit step: surface temperatures T, means over the span, with
     /// k_i (T_i − T_i,free) = Σ_j G_ij (T_j − T_i), where `lines` fills k and T_free of all particles about given
-    /// surface temperatures in K; `start` holds those of the last commit in K, by which conductivities go.
+    /// surface temperatures in K at the end of the span; `start` holds those of the last commit in K, by which conductivities
+    /// go.
     pub fn solve<E>(
         &mut self,
         start: &[f64],
@@ -245,7 +264,9 @@ impl HeatNetwork {
         }
         let work = &mut self.work;
         let (solid, walled) = (work.bonds.len(), work.reservoir_links.len());
+        (work.solid, work.walled) = (solid, walled);
         let nodes = count + self.radiation.radiosities();
+        work.nodes = nodes;
         let bodies = &surroundings.bodies;
         let all = nodes + bodies.start.len();
         work.reservoirs.clear();
@@ -256,28 +277,16 @@ impl HeatNetwork {
         work.temperature.extend_from_slice(bodies.start);
         work.lines.clear();
         work.lines.resize(count, SurfaceLine::default());
+        work.means.begin(start);
         let mut outcome = NetworkOutcome::Settled;
         for iteration in 0..ITERATIONS {
             work.last_lines.clone_from(&work.lines);
-            lines(&work.temperature[..count], &mut work.lines)?;
+            lines(&work.means.end, &mut work.lines)?;
             // Without radiation only the lines can bend.
             let bends = !self.radiation.is_empty() || all > nodes;
             if iteration > 0 && !bends && work.lines == work.last_lines {
                 outcome = NetworkOutcome::Settled;
                 break;
-            }
-            work.capacity.clear();
-            work.capacity
-                .extend(work.lines.iter().map(|line| line.conductance));
-            work.capacity.resize(nodes, 0.0);
-            work.old.clear();
-            work.old
-                .extend(work.lines.iter().map(|line| line.temperature));
-            work.old.extend_from_slice(&start[..nodes - count]);
-            for (body, kelvin) in work.temperature[nodes..].iter().enumerate() {
-                let line = (bodies.line)(body, *kelvin);
-                work.capacity.push(line.conductance);
-                work.old.push(line.temperature);
             }
             for (reservoir, kelvin) in work.reservoirs.iter_mut().enumerate() {
                 if let Some(body) = bodies.of_reservoir(reservoir) {
@@ -286,19 +295,48 @@ impl HeatNetwork {
             }
             work.bonds.truncate(solid);
             work.reservoir_links.truncate(walled);
+            work.seen.clone_from(&work.temperature);
+            warm(&mut work.seen, &self.warmer);
             self.radiation.linearise(
-                &work.temperature,
+                &work.seen,
                 &work.reservoirs,
                 &mut work.bonds,
                 &mut work.reservoir_links,
             );
+            let shift = nodes - count;
+            work.means
+                .weigh(&work.lines, &work.bonds, &work.reservoir_links, shift);
+            work.capacity.clear();
+            work.old.clear();
+            for line in work.means.lines(&work.lines, start) {
+                work.capacity.push(line.conductance);
+                work.old.push(line.temperature);
+            }
+            work.capacity.resize(nodes, 0.0);
+            work.old.extend_from_slice(&start[..shift]);
+            for (body, kelvin) in work.temperature[nodes..].iter().enumerate() {
+                let line = (bodies.line)(body, *kelvin);
+                work.capacity.push(line.conductance);
+                work.old.push(line.temperature);
+            }
             work.sink_conductance.clear();
             work.sink_conductance.resize(all, 0.0);
             work.drive.clear();
             work.drive.resize(all, 0.0);
-            for &([node, reservoir], g) in &work.reservoir_links {
+            let warmer = |node: usize| self.warmer.get(node).copied().unwrap_or_default();
+            if !self.warmer.is_empty() {
+                for &([i, j], g) in &work.bonds[solid..] {
+                    let more = g * (warmer(j) - warmer(i));
+                    work.drive[i] += more;
+                    work.drive[j] -= more;
+                }
+            }
+            for (link, &([node, reservoir], g)) in work.reservoir_links.iter().enumerate() {
+                let more = if link < walled { 0.0 } else { g * warmer(node) };
+                work.drive[node] -= more;
                 if let Some(body) = bodies.of_reservoir(reservoir) {
                     work.bonds.push(([node, nodes + body], g));
+                    work.drive[nodes + body] += more;
                     continue;
                 }
                 work.sink_conductance[node] += g;
@@ -317,6 +355,7 @@ impl HeatNetwork {
                 outcome = NetworkOutcome::Unsolved { residual };
                 break;
             }
+            work.means.advance(start, &work.temperature);
             let [now, last] = [&work.temperature, &work.last].map(|all| all.split_at(nodes));
             outcome = compare(now.0, last.0, count);
             let stays = compare(now.1, last.1, 0) == NetworkOutcome::Settled;
@@ -332,14 +371,21 @@ impl HeatNetwork {
                 *kelvin = self.body_temperature[body];
             }
         }
-        self.book(count, [solid, nodes]);
+        self.book(count);
         Ok(outcome)
     }
 
     /// Heat over every bond and link to a reservoir, the same on both of its sides.
-    fn book(&mut self, count: usize, [solid, nodes]: [usize; 2]) {
-        let work = &self.work;
-        let (kelvin, reservoirs) = (&work.temperature, &work.reservoirs);
+    fn book(&mut self, count: usize) {
+        let work = &mut self.work;
+        work.seen.clone_from(&work.temperature);
+        warm(&mut work.seen, &self.warmer);
+        let (solid, walled, nodes) = (work.solid, work.walled, work.nodes);
+        let reservoirs = &work.reservoirs;
+        let of = |contact: bool| match contact {
+            true => &work.temperature,
+            false => &work.seen,
+        };
         self.heat.clear();
         self.heat.resize(count, 0.0);
         self.reservoir_heat.clear();
@@ -357,61 +403,30 @@ impl HeatNetwork {
             if (row(i) == row(j) && k >= solid) || j >= nodes {
                 continue;
             }
+            let kelvin = of(k < solid);
             let flow = g * (kelvin[j] - kelvin[i]);
             self.heat[row(i)] += flow;
             self.heat[row(j)] -= flow;
         }
-        for &([node, reservoir], g) in &work.reservoir_links {
+        for (k, &([node, reservoir], g)) in work.reservoir_links.iter().enumerate() {
             if let Some(own) = self.stiffness.get_mut(node) {
                 *own += g;
             }
-            let flow = g * (reservoirs[reservoir] - kelvin[node]);
+            let flow = g * (reservoirs[reservoir] - of(k < walled)[node]);
             self.heat[row(node)] += flow;
             self.reservoir_heat[reservoir] += flow;
         }
-    }
-
-    /// Contacts and gaps at the temperatures of the start, in K.
-    fn conduct(&mut self, old: &[f64], surroundings: &NetworkSurroundings<'_>) {
-        let Self {
-            laws,
-            materials,
-            material,
-            walls,
-            work,
-            ..
-        } = self;
-        work.bonds.clear();
-        work.reservoir_links.clear();
-        work.conductance.resize(self.pairs.len(), 0.0);
-        fill(&mut work.conductance, |pair| {
-            let touch = &self.pairs[pair];
-            let [i, j] = touch.particles;
-            let of = [i, j].map(|p| &materials[material[p]]);
-            let conductivity = [of[0].conductivity.at(old[i]), of[1].conductivity.at(old[j])];
-            let gas = [i, j].map(|p| surroundings.gas_conductivity[p]);
-            let gas = 2.0 * gas[0] * gas[1] / (gas[0] + gas[1]);
-            conductance(laws, of, touch.radius, touch.overlap, conductivity, gas)
-        });
-        let bonds = self.pairs.iter().zip(&work.conductance);
-        let conducting = bonds.filter(|(_, g)| **g > 0.0);
-        let bond = |(touch, g): (&NeighbourPair, &f64)| (touch.particles, *g);
-        work.bonds.extend(conducting.map(bond));
-        for touch in &self.wall_touches {
-            let (i, reservoir) = (touch.particle, touch.reservoir);
-            let Some(&wall) = walls.get(reservoir) else {
-                continue;
-            };
-            let of = [&materials[material[i]], &materials[wall]];
-            let kelvin = [old[i], surroundings.reservoirs[reservoir]];
-            let conductivity = [0, 1].map(|k| of[k].conductivity.at(kelvin[k]));
-            let radius = [touch.radius, f64::INFINITY];
-            let gas = surroundings.gas_conductivity[i];
-            let g = conductance(laws, of, radius, touch.overlap, conductivity, gas);
-            if g > 0.0 {
-                work.reservoir_links.push(([i, reservoir], g));
-            }
+        // The network follows the mean over the span, which a temperature at its end moves by that share.
+        for (own, share) in self.stiffness.iter_mut().zip(&work.means.share) {
+            *own *= share;
         }
+    }
+}
+
+/// Adds to the first temperatures in K what they are warmer.
+fn warm(kelvin: &mut [f64], warmer: &[f64]) {
+    for (kelvin, more) in kelvin.iter_mut().zip(warmer) {
+        *kelvin += more;
     }
 }
 
@@ -430,39 +445,6 @@ fn compare(now: &[f64], last: &[f64], count: usize) -> NetworkOutcome {
         }
     }
     outcome
-}
-
-/// Conductance in W/K of contact and gap of two spheres.
-fn conductance(
-    laws: &HeatLaws,
-    of: [&ThermalProperties; 2],
-    radius: [f64; 2],
-    overlap: f64,
-    conductivity: [f64; 2],
-    gas_conductivity: f64,
-) -> f64 {
-    let density = of.map(|one| one.density);
-    let (soft, real) = (of.map(|one| one.soft), of.map(|one| one.real));
-    let contact = SphereContact {
-        radius,
-        overlap: laws.area.overlap(radius, overlap, density, soft, real),
-        conductivity,
-    };
-    let through = match contact.overlap > 0.0 {
-        true => laws.conduction.conductance(&contact),
-        false => 0.0,
-    };
-    let gap = SphereGap {
-        radius,
-        distance: match contact.overlap > 0.0 {
-            true => -contact.overlap,
-            false => -overlap,
-        },
-        contact_radius: (contact.reduced_radius() * contact.overlap).sqrt(),
-        conductivity,
-        gas_conductivity,
-    };
-    through + laws.gap.conductance(&gap)
 }
 
 /// A black material of a conductivity in W/m/K.

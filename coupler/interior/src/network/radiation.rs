@@ -112,6 +112,28 @@ impl Radiation {
         }
     }
 
+    /// Pairs of particles that exchange radiation, with their area in m²: that of what is emitted and absorbed, or of radiosities.
+    pub fn pairs(&self) -> impl Iterator<Item = ([usize; 2], f64)> {
+        let pairs = self.views.pairs.iter();
+        pairs.map(|&([i, j], area)| ([i, j], (self.of(i) * self.of(j)).sqrt() * area))
+    }
+
+    /// The same of particles and reservoirs.
+    pub fn links(&self) -> impl Iterator<Item = ([usize; 2], f64)> {
+        let links = self.views.reservoirs.iter();
+        links.map(|&([i, reservoir], area)| ([i, reservoir], self.of(i) * area))
+    }
+
+    /// A e/(1 − e) in m² between a surface and its radiosity.
+    pub fn own(&self, particle: usize) -> f64 {
+        let e = self.emissivity[particle];
+        let factor = match e < 1.0 {
+            true => (e / (1.0 - e)).min(BLACK),
+            false => BLACK,
+        };
+        self.views.surface[particle] * factor
+    }
+
     /// Appends the bonds and links to reservoirs of an iterate: temperatures of all nodes and of reservoirs in K.
     ///
     /// A black surface in a bed with grey ones keeps its radiosity node: its own bond is then so strong, 1e6
@@ -132,20 +154,14 @@ impl Radiation {
             let left = (self.of(i) * self.of(j)).sqrt();
             (ends, left * area * linear(kelvin[ends[0]], kelvin[ends[1]]))
         });
-        for &([i, reservoir], area) in &self.views.reservoirs {
+        for ([i, reservoir], area) in self.links() {
             let node = i + shift;
             let h = linear(kelvin[node], reservoirs[reservoir]);
-            reservoir_links.push(([node, reservoir], self.of(i) * area * h));
+            reservoir_links.push(([node, reservoir], area * h));
         }
         for i in 0..shift {
-            let e = self.emissivity[i];
-            let factor = if e < 1.0 {
-                (e / (1.0 - e)).min(BLACK)
-            } else {
-                BLACK
-            };
             let h = linear(kelvin[i], kelvin[i + shift]);
-            bonds.push(([i, i + shift], self.views.surface[i] * factor * h));
+            bonds.push(([i, i + shift], self.own(i) * h));
         }
     }
 }

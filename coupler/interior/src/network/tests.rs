@@ -1,5 +1,5 @@
 use super::*;
-use calcine_physics::conduction::{BatchelorObrien, NoConduction, RongHorio};
+use calcine_physics::conduction::{BatchelorObrien, NoConduction, RongHorio, SphereGap};
 use calcine_physics::radiation::STEFAN_BOLTZMANN;
 
 fn still(count: usize) -> Vec<f64> {

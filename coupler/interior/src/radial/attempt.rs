@@ -32,8 +32,7 @@ const CLOSE: f64 = 1e-8;
 /// A particle that cannot be followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
-    "the inside of a particle at {temperature} K cannot be followed beyond {reached} s of a window of {span} s: check that its pores \
-     stay open (true densities, `size`), its rate constants and its permeability, or shorten the windows"
+    "the inside of a particle at {temperature} K cannot be followed beyond {reached} s of a window of {span} s: {}", self.remedy()
 )]
 pub struct RadialStalled {
     /// Temperature of its surface in K.
@@ -42,6 +41,22 @@ pub struct RadialStalled {
     pub reached: f64,
     /// The window in s.
     pub span: f64,
+    /// True where solids came to fill a shell.
+    pub full: bool,
+}
+
+impl RadialStalled {
+    fn remedy(&self) -> &'static str {
+        match self.full {
+            true => {
+                "its solids come to fill a shell, so that no gas passes: check true densities, `density` and `size`"
+            }
+            false => {
+                "its equations are not solved at any step: check the rate constants, orders and equilibria of its reactions, and \
+                 conductivity and permeability, or shorten the windows"
+            }
+        }
+    }
 }
 
 /// What a window does to a particle; its state is left in the lane of the workspace.
@@ -51,8 +66,11 @@ pub(super) struct RadialOutcome {
     pub heat: f64,
     pub heat_slope: f64,
     pub surface_slope: f64,
-    /// Change of the temperature of the surface with heat from contacts and radiation in K/W.
+    /// Change of the temperature of the surface with heat from contacts and radiation in K/W; where the network asks, that of its
+    /// mean over the window, and the same of its change with the temperature of the gas.
     pub surface_by_heat: f64,
+    /// Means of the temperature of the surface in K and of its fourth power in K⁴.
+    pub surface: [f64; 2],
     /// Mean temperature in K with which gas leaves.
     pub released: f64,
     /// Mean flow of each gas to the gas outside in mol/s, and its change with the own mole fraction outside.
@@ -65,6 +83,7 @@ pub(super) struct RadialOutcome {
     pub rounds: usize,
     /// Sums of the step at hand, and of the gas that left in the window with its temperature.
     step_heat: f64,
+    step_surface: [f64; 2],
     step_weight: [f64; 2],
     leaving: [f64; 2],
 }
@@ -72,13 +91,14 @@ pub(super) struct RadialOutcome {
 /// The stage at which a particle is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum StageAt {
-    /// Both of the method, the error of their step through their equations, the end of the step alone, and how the particle answers at
-    /// the end of the window.
+    /// Both of the method, the error of their step through their equations, the end of the step alone, how the particle answers at
+    /// the end of the window, and how the mean of its surface does.
     First,
     Second,
     Error,
     Whole,
     Answer,
+    MeanAnswer,
 }
 
 /// A particle on its way through a window.
@@ -97,6 +117,8 @@ pub(super) struct RadialCourse {
     fallen: usize,
     /// Error of what the step turned over, over its tolerance.
     turned_error: f64,
+    /// True where solids filled a shell since the last step that was taken.
+    full: bool,
     pub out: RadialOutcome,
 }
 
@@ -127,6 +149,7 @@ impl RadialPhysics {
         }
         copy_lane(&mut ws.start.pressure, &ws.now.pressure, lane);
         ws.fresh[lane] = 1.0;
+        ws.alone[lane] = 0.0;
         let mut course = RadialCourse {
             span,
             time: 0.0,
@@ -137,6 +160,7 @@ impl RadialPhysics {
             moved: f64::INFINITY,
             fallen: 0,
             turned_error: 0.0,
+            full: false,
             out: RadialOutcome::default(),
         };
         self.begin(lane, &mut course, ws);
@@ -155,6 +179,23 @@ impl RadialPhysics {
         course.out.rounds += 1;
         if course.stage == StageAt::Answer {
             self.answer(lane, outside, ws, &mut course.out);
+            if outside.networked {
+                // What heat stores over the window is there for half of it in the mean, what passes the film at once.
+                let half = 0.5 * course.span;
+                fill_lane(&mut ws.base.weight, lane, half);
+                ws.length[lane] = half;
+                copy_lane(&mut ws.now.amount, &ws.start.amount, lane);
+                course.stage = StageAt::MeanAnswer;
+                return None;
+            }
+            return Some(Ok(()));
+        }
+        if course.stage == StageAt::MeanAnswer {
+            let found = ws.algebra.above(ws.shells)[0][lane];
+            if found.is_finite() {
+                course.out.surface_by_heat = found;
+                course.out.surface_slope = ws.held.film_heat[lane] * found;
+            }
             return Some(Ok(()));
         }
         if course.stage == StageAt::Error {
@@ -164,6 +205,7 @@ impl RadialPhysics {
         course.round += 1;
         let moved = ws.moved[lane];
         let sound = ws.updating[lane] == 0.0 || ws.broken[lane] == 0.0;
+        course.full |= ws.room[lane] <= 0.0;
         let goes = sound && moved.is_finite() && ws.room[lane] > 0.0;
         // Changes shrink by a rate: the iterate is off by what the later ones would come to in all (Hairer and Wanner, Solving
         // Ordinary Differential Equations II, 2nd ed. (1996), section IV.8).
@@ -212,7 +254,7 @@ impl RadialPhysics {
             }
             StageAt::Second => {
                 // The end of the step alone: positive, and of first order.
-                (course.out.step_heat, course.out.step_weight) = (0.0, [0.0; 2]);
+                course.out.begin_step();
                 copy_lane(&mut ws.now.temperature, &ws.first_stage.temperature, lane);
                 copy_lane(&mut ws.now.pressure, &ws.first_stage.pressure, lane);
                 base_of_start(lane, length, ws);
@@ -240,10 +282,23 @@ impl RadialPhysics {
         ws: &mut RadialWorkspace,
     ) -> Option<Result<(), RadialStalled>> {
         let out = &mut course.out;
-        if error <= 1.0 {
+        let factor = if error.is_finite() {
+            (SAFETY / error.max(1e-10).sqrt()).clamp(0.2, 4.0)
+        } else {
+            0.25
+        };
+        let step = course.length * factor;
+        // What comes and goes within the shortest step is not followed: the step ends where it leads to.
+        let fleeting = error > 1.0 && error.is_finite() && step < SHORTEST * course.span;
+        let factor = if fleeting { 4.0 } else { factor };
+        let step = course.length * factor;
+        if error <= 1.0 || fleeting {
             course.time += course.length;
+            course.full = false;
             out.steps += 1;
             out.heat += out.step_heat;
+            out.surface[0] += out.step_surface[0];
+            out.surface[1] += out.step_surface[1];
             out.leaving[0] += out.step_weight[0];
             out.leaving[1] += out.step_weight[1];
             self.add_flow(lane, ws, out);
@@ -256,23 +311,19 @@ impl RadialPhysics {
                 fill_lane(&mut ws.base.weight, lane, course.span);
                 ws.length[lane] = course.span;
                 ws.updating[lane] = 0.0;
+                ws.alone[lane] = 1.0;
                 course.stage = StageAt::Answer;
                 return None;
             }
         } else {
             out.repeated += 1;
         }
-        let factor = if error.is_finite() {
-            (SAFETY / error.max(1e-10).sqrt()).clamp(0.2, 4.0)
-        } else {
-            0.25
-        };
-        let step = course.length * factor;
         if step < SHORTEST * course.span || out.steps + out.repeated > MOST_STEPS {
             return Some(Err(RadialStalled {
                 temperature: ws.start.temperature[ws.shells][lane],
                 reached: course.time,
                 span: course.span,
+                full: course.full,
             }));
         }
         let left = course.span - course.time;
@@ -284,7 +335,7 @@ impl RadialPhysics {
 
     /// Begins a step: the start as base and as iterate.
     fn begin(&self, lane: usize, course: &mut RadialCourse, ws: &mut RadialWorkspace) {
-        (course.out.step_heat, course.out.step_weight) = (0.0, [0.0; 2]);
+        course.out.begin_step();
         copy_lane(&mut ws.now.temperature, &ws.start.temperature, lane);
         copy_lane(&mut ws.now.pressure, &ws.start.pressure, lane);
         let first = GAMMA * course.length;
@@ -321,6 +372,8 @@ impl RadialPhysics {
             passing += (flow * ws.gas_capacity[n * g + k][lane]).abs();
         }
         out.step_heat += length * ws.held.film_heat[lane] * (outside.temperature - surface);
+        out.step_surface[0] += length * surface;
+        out.step_surface[1] += length * surface.powi(4);
         out.step_weight[0] += length * passing;
         out.step_weight[1] += length * passing * surface;
     }
@@ -397,11 +450,19 @@ impl RadialPhysics {
     }
 }
 
+impl RadialOutcome {
+    /// Sums of a step begin anew.
+    fn begin_step(&mut self) {
+        (self.step_heat, self.step_surface, self.step_weight) = (0.0, [0.0; 2], [0.0; 2]);
+    }
+}
+
 impl RadialCourse {
     /// Ends it: sums become means.
     pub fn end(mut self, lane: usize, ws: &RadialWorkspace) -> RadialOutcome {
         let out = &mut self.out;
         out.heat /= self.span;
+        out.surface = out.surface.map(|sum| sum / self.span);
         out.flow.iter_mut().for_each(|flow| *flow /= self.span);
         out.released = if out.leaving[0] > 0.0 {
             out.leaving[1] / out.leaving[0]

@@ -15,6 +15,7 @@ use calcine_numerics::{Dual, Number};
 use calcine_physics::film::bernoulli;
 use calcine_physics::gas::GAS_CONSTANT;
 
+use super::instant::{ReactingEnthalpies, ShellStores};
 use super::physics::RadialPhysics;
 use super::rates::ShellState;
 use super::side_by_side::Wide;
@@ -159,6 +160,28 @@ impl RadialPhysics {
         }
     }
 
+    /// What a shell and its faces hold of gases and heat in a stage.
+    #[inline(always)]
+    fn stores<const G: usize>(&self, shell: usize, ws: &RadialWorkspace) -> ShellStores {
+        let s = ws.solids;
+        let g = if G == ANY { ws.gases } else { G };
+        let per_pascal =
+            ws.held.pores[shell] * ws.now.temperature[shell].inverse() * (1.0 / GAS_CONSTANT);
+        let mut all = ShellStores::default();
+        for (k, own) in all.gas.iter_mut().enumerate().take(g) {
+            let mut passes = ws.held.diffusion[(shell * g + k) * g + k];
+            if shell > 0 {
+                passes += ws.held.diffusion[((shell - 1) * g + k) * g + k];
+            }
+            *own = per_pascal + ws.length * passes;
+        }
+        for k in shell * s..(shell + 1) * s {
+            all.heat += ws.now.amount[k] * ws.solid_capacity[k];
+        }
+        all.heat += ws.length * ws.held.conductance[shell];
+        all
+    }
+
     /// Takes the extents of a shell out of its linear equations: δξ = rest + (by T) δT + (by p) δp.
     #[inline(always)]
     fn eliminate<const G: usize>(&self, shell: usize, ws: &mut RadialWorkspace) {
@@ -166,6 +189,7 @@ impl RadialPhysics {
         let g = if G == ANY { ws.gases } else { G };
         let width = r + 2 + g;
         let weight = ws.base.weight[shell];
+        let stores = self.stores::<G>(shell, ws);
         let state = ShellState {
             temperature: ws.now.temperature[shell],
             pressures: &ws.now.pressure[shell * g..(shell + 1) * g],
@@ -175,6 +199,11 @@ impl RadialPhysics {
         };
         for j in 0..r {
             self.rate(j, &state, &mut ws.rate);
+            let enthalpies = ReactingEnthalpies {
+                solids: &ws.solid_enthalpy[shell * s..(shell + 1) * s],
+                gases: &ws.gas_enthalpy[shell * g..(shell + 1) * g],
+            };
+            self.tame(j, &state, weight, (&stores, &enthalpies), &mut ws.rate);
             let row = &mut ws.small[j * width..(j + 1) * width];
             for (i, reaction) in self.chemistry.reactions.iter().enumerate() {
                 let mut slope = Wide::default();
@@ -284,6 +313,11 @@ impl RadialPhysics {
         let kelvin = ws.now.temperature[n][lane];
         ws.right[n * block][lane] += film * (outside.temperature - kelvin) + outside.heat;
         ws.entries[at(block, own, 0, 0)][lane] += film;
+        if ws.alone[lane] == 0.0 {
+            let beside = &outside.beside;
+            ws.right[n * block][lane] += beside.heat(kelvin, kelvin.powi(4));
+            ws.entries[at(block, own, 0, 0)][lane] += beside.slope(kelvin);
+        }
         let net = net_flow(lane, outside, ws);
         let opening = ws.held.opening[lane];
         for k in 0..g {

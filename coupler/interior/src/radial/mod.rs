@@ -6,7 +6,8 @@
 //! radiation meet. Gas that flows carries its enthalpy, all gases of the mixture flow, and what a reaction takes of a solid it makes of
 //! gas: mass, elements and energy close in each particle by construction.
 //!
-//! Over a window a particle is followed with the gas about it held, as [`crate::Reacting`]. What the exchange then books otherwise
+//! Over a window a particle is followed with the gas about it held, as [`crate::Reacting`], and with what its contacts and views lead to
+//! at its mean: heat from these follows the surface within the particle's own steps. What the exchange then books otherwise
 //! than the particle said is owed to it: gas with the next window's flow, heat at its surface.
 
 mod attempt;
@@ -14,6 +15,7 @@ mod book;
 mod columns;
 mod equations;
 mod grid;
+mod instant;
 pub mod material;
 mod model;
 mod onwards;
@@ -58,6 +60,8 @@ pub struct Radial {
     resolved: Vec<(usize, Vec<f64>)>,
     /// True where this window has an attempt, and the span in s of the last one.
     tried: bool,
+    /// True where the last attempt followed what surfaces are beside.
+    follows_network: bool,
     last_span: f64,
     bodies: [RadialBodies; 2],
     /// Steps and shells times steps of all attempts, those that went by the end of a step alone, and rounds of Newton's method.
@@ -110,6 +114,7 @@ impl Radial {
             attempt: Vec::new(),
             resolved: Vec::new(),
             tried: false,
+            follows_network: false,
             last_span: 0.0,
             bodies: Default::default(),
             work: [0; 4],

@@ -12,8 +12,8 @@ use super::state::{RowLayout, TellLayout};
 use crate::column::{ColumnKind, ColumnShape, Ragged, StateColumn};
 use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
-    Transfer,
+    At, Bodies, Channel, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    SurfaceMean, Surroundings, Transfer,
 };
 use crate::thin::TEMPERATURE;
 
@@ -110,11 +110,12 @@ impl ParticleModel for Radial {
             let tell = &row[self.tell.from..];
             let by_heat = tell[TellLayout::SURFACE_BY_HEAT];
             let warmer = around.temperature[p] - tell[TellLayout::GAS_TEMPERATURE];
-            let free = row[RowLayout::SURFACE] + tell[TellLayout::SURFACE_SLOPE] * warmer
+            let free = tell[TellLayout::SURFACE_MEAN] + tell[TellLayout::SURFACE_SLOPE] * warmer
                 - tell[TellLayout::NETWORK] * by_heat;
             *line = SurfaceLine {
                 conductance: 1.0 / by_heat,
                 temperature: free,
+                stored: 0.0,
             };
         }
         Ok(())
@@ -124,9 +125,10 @@ impl ParticleModel for Radial {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
+        self.follows_network = network.first().is_some_and(|one| one.beside.is_some());
         self.react(around, span, network)?;
         let g = self.layout.gases;
         for p in 0..self.count() {
@@ -160,6 +162,10 @@ impl ParticleModel for Radial {
             }
         }
         Ok(())
+    }
+
+    fn surface_mean(&self, row: usize) -> Option<SurfaceMean> {
+        self.follows_network.then(|| self.mean_of(row))
     }
 
     /// What was exchanged otherwise than the particle said is owed to it.
@@ -287,7 +293,7 @@ impl Radial {
 
     /// What follows from the committed rows, before any attempt.
     pub(super) fn begin(&mut self) {
-        self.tried = false;
+        (self.tried, self.follows_network) = (false, false);
         self.attempt.clear();
         let mut bodies = std::mem::take(&mut self.bodies[1]);
         bodies.clear();
@@ -389,7 +395,11 @@ impl Radial {
         };
         if kind == RadialColumn::Shells {
             if values.len() != 1 && values.len() != layout.shells {
-                return Err(wrong(format!("1 or {}, as `shells` has it", layout.shells)));
+                return Err(wrong(format!(
+                    "1 or {}: a particle keeps its shells over a run, so write `radial.shells` of its material as it was when the state \
+                     was written, or begin anew without --resume and --from",
+                    layout.shells
+                )));
             }
             row[layout.count()] = values.len() as f64;
             let from = layout.temperatures().start;

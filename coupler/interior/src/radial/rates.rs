@@ -284,27 +284,31 @@ impl RadialPhysics {
         let mut value = state.volume;
         let slopes = &mut out.by_amount;
         slopes.fill(Wide::default());
+        // Of all factors so far times the next one; a factor that is zero keeps its slope.
+        let mut take = |value: &mut Wide, s: usize, [factor, slope]: [Wide; 2]| {
+            for other in slopes.iter_mut() {
+                *other = *other * factor;
+            }
+            slopes[s] += *value * slope;
+            *value = *value * factor;
+        };
         let trace = trace(state);
         let is_used = |s: usize| reaction.solids.iter().any(|one| one.0 == s && one.1 < 0.0);
         let used = reaction.solids.iter().filter(|one| one.1 < 0.0);
         let others = law.solids.iter().filter(|one| !is_used(one.0));
-        // Slopes of the logarithm at first.
         for &(s, _) in used.chain(others) {
             let (n, order) = (state.amounts[s], order_in(s));
             if order == 1.0 {
-                value = value * (n.positive() / state.volume);
-                let own = n.positive().inverse();
-                slopes[s] = n.if_positive(own, Wide::default());
+                let over = state.volume.inverse();
+                take(&mut value, s, [n.positive() * over, over]);
                 continue;
             }
+            let mut factor = [Wide::default(); 2];
             for lane in 0..LANES {
-                let [factor, slope] = ends(n[lane], order, trace[lane], state.volume[lane]);
-                value[lane] *= factor;
-                slopes[s][lane] = if factor == 0.0 { 0.0 } else { slope / factor };
+                [factor[0][lane], factor[1][lane]] =
+                    ends(n[lane], order, trace[lane], state.volume[lane]);
             }
-        }
-        for slope in slopes.iter_mut() {
-            *slope = *slope * value;
+            take(&mut value, s, factor);
         }
         if backwards {
             let by = &mut out.by_amount_back;

@@ -12,19 +12,19 @@ use super::state::{RowLayout, TellLayout};
 use super::transport::{Outside, OutsideLanes};
 use super::workspace::RadialWorkspace;
 use crate::error::ModelError;
-use crate::model::Surroundings;
+use crate::model::{NetworkHeat, SurfaceMean, Surroundings};
 
 /// Particles that a thread takes at a time.
 const CHUNK: usize = 8 * LANES;
 
 impl Radial {
-    /// Follows every particle over a process span in s, each by itself, with the network's heat in W. Those of one shell that hide too
+    /// Follows every particle over a process span in s, each by itself, with the network's heat, or beside what it leads to. Those of one shell that hide too
     /// much get their shells, and are followed anew from the start of the window.
     pub(super) fn react(
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
     ) -> Result<(), ModelError> {
         self.follow(around, span, network, None)?;
         let hiding = self.hiding(&self.attempt);
@@ -40,7 +40,7 @@ impl Radial {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         some: Option<&[usize]>,
     ) -> Result<(), ModelError> {
         let width = self.tell.end();
@@ -164,7 +164,13 @@ impl Radial {
             gas.mole_fractions(composition, &mut fractions[..g]);
             fractions.iter_mut().for_each(|x| *x = x.max(0.0));
         }
-        let heat = network.get(p).copied().unwrap_or_default();
+        // Without heat the network asks for lines first.
+        let given = network.get(p);
+        let beside = given.and_then(|one| one.beside);
+        let heat = match (given, beside) {
+            (Some(one), None) => one.mean,
+            _ => 0.0,
+        };
         Outside {
             temperature: around.temperature[p],
             pressure: around.pressure.get(p).copied().unwrap_or_default(),
@@ -174,6 +180,17 @@ impl Radial {
             radius: around.radius.get(p).copied().unwrap_or_default(),
             conductance: around.conductance[p],
             heat: heat + self.row(p)[self.layout.owed_heat()] / span,
+            beside: beside.unwrap_or_default(),
+            networked: given.is_none() || beside.is_some(),
+        }
+    }
+
+    /// Means of the surface of a particle in its last attempt.
+    pub(super) fn mean_of(&self, p: usize) -> SurfaceMean {
+        let tell = &self.attempted(p)[self.tell.from..];
+        SurfaceMean {
+            temperature: tell[TellLayout::SURFACE_MEAN],
+            fourth_power: tell[TellLayout::SURFACE_MEAN + 1],
         }
     }
 
@@ -238,7 +255,13 @@ impl Radial {
         tell[TellLayout::SURFACE_BY_HEAT] = outcome.surface_by_heat;
         tell[TellLayout::RELEASED] = outcome.released;
         tell[TellLayout::GAS_TEMPERATURE] = outside.temperature;
-        tell[TellLayout::NETWORK] = seen.network.get(p).copied().unwrap_or_default();
+        let [kelvin, fourth_power] = outcome.surface;
+        tell[TellLayout::NETWORK] = seen.network.get(p).map_or(0.0, |given| {
+            let beside = given.beside;
+            beside.map_or(given.mean, |beside| beside.heat(kelvin, fourth_power))
+        });
+        tell[TellLayout::SURFACE_MEAN] = kelvin;
+        tell[TellLayout::SURFACE_MEAN + 1] = fourth_power;
         tell[TellLayout::STEPS] = outcome.steps as f64;
         tell[TellLayout::FALLEN] = outcome.fallen_back as f64;
         tell[TellLayout::ROUNDS] = outcome.rounds as f64;
@@ -257,7 +280,7 @@ fn among(some: Option<&[usize]>, p: usize) -> bool {
 struct SeenByChunk<'a> {
     around: &'a Surroundings<'a>,
     span: f64,
-    network: &'a [f64],
+    network: &'a [NetworkHeat],
     /// The first of them, and which particles are followed if not all are.
     from: usize,
     some: Option<&'a [usize]>,

@@ -76,7 +76,9 @@ impl TellLayout {
     /// Difference of temperature in K and of partial pressures over the pressure that a particle of one shell hides.
     pub const HIDDEN: usize = 9;
     pub const ROUNDS: usize = 11;
-    const FLOWS: usize = 12;
+    /// Means of the temperature of the surface in K and of its fourth power in K⁴.
+    pub const SURFACE_MEAN: usize = 12;
+    const FLOWS: usize = 14;
 
     pub fn flow(&self) -> Range<usize> {
         let from = self.from + Self::FLOWS;

@@ -1,8 +1,10 @@
 //! Particles with shells as a whole.
 
 mod conservation;
+mod fast;
 mod limits;
 mod orders;
+mod radiation;
 mod steps;
 mod support;
 mod turning;

@@ -8,6 +8,7 @@ use calcine_physics::pores::{DustyGas, PorousConductivity, knudsen};
 use super::physics::{PAIR_PRESSURE, PAIR_TEMPERATURE, RadialPhysics};
 use super::side_by_side::{LANES, Wide};
 use super::workspace::RadialWorkspace;
+use crate::model::SurfaceNetwork;
 
 /// How much better than the outermost shell the film lets pass what flows by pressure: its pressure drops by nothing that shows.
 const OPENING: f64 = 1e4;
@@ -26,8 +27,12 @@ pub(super) struct Outside<'a> {
     pub radius: f64,
     /// h A in W/K at the start.
     pub conductance: f64,
-    /// Heat from contacts and radiation, and what is owed, in W.
+    /// Heat in W that does not follow the surface: what is owed, and what contacts and radiation bring where they are not told.
     pub heat: f64,
+    /// Contacts and views, which follow the surface.
+    pub beside: SurfaceNetwork,
+    /// True where the network asks how the mean temperature of the surface follows its heat.
+    pub networked: bool,
 }
 
 /// What acts on the particle of each lane.

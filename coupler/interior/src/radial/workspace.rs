@@ -113,6 +113,8 @@ pub(super) struct RadialWorkspace {
     /// One in the lanes that take coefficients anew in this round, and in those whose enthalpy at the start is not known yet.
     pub updating: Wide,
     pub fresh: Wide,
+    /// One in the lanes whose surface is without contacts and views, to find how it follows heat.
+    pub alone: Wide,
     /// True where a lane took up a particle since shells were measured.
     pub taken_up: bool,
     /// What the round found: the least volume of pores in m³, zero where coefficients are finite (else NaN), and the largest relative
@@ -195,6 +197,7 @@ impl RadialWorkspace {
             length: Wide::default(),
             updating: Wide::default(),
             fresh: Wide::default(),
+            alone: Wide::default(),
             taken_up: false,
             room: Wide::default(),
             broken: Wide::default(),

@@ -8,8 +8,8 @@ use super::{Amounts, Reacting};
 use crate::column::{ColumnKind, Ragged, StateColumn};
 use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
-    Tally, Transfer,
+    At, Bodies, Channel, GasLines, Inventory, NetworkHeat, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
 };
 use crate::thin::{SECANT, TEMPERATURE};
 use crate::without;
@@ -134,7 +134,7 @@ impl ParticleModel for Reacting {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
         self.react(around, span, network)

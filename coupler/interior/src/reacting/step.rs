@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::Reacting;
 use super::attempt::{AttemptGuess, ParticleStart, ParticleWorkspace};
 use super::passage::ParticleSurroundings;
-use crate::model::Surroundings;
+use crate::model::{NetworkHeat, Surroundings};
 
 /// A particle whose reactions cannot be followed.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -65,7 +65,7 @@ impl Reacting {
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
-        network: &[f64],
+        network: &[NetworkHeat],
     ) -> Result<(), ReactError> {
         let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
         let width = EXTENTS + 2 * count + 3 * channels;
@@ -80,7 +80,9 @@ impl Reacting {
             &mut results,
             width,
             ParticleScratch::default,
-            |p, row, scratch| self.react_one(p, around, (span, network[p], first), row, scratch),
+            |p, row, scratch| {
+                self.react_one(p, around, (span, network[p].mean, first), row, scratch)
+            },
         );
         for (p, row) in results.chunks_exact(width).enumerate() {
             let (head, rest) = row.split_at(EXTENTS);

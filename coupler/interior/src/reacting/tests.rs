@@ -7,7 +7,9 @@ use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
 use super::*;
-use crate::{At, GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Transfer};
+use crate::{
+    At, GasLines, NetworkHeat, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Transfer,
+};
 
 /// Films of the temperature of the gas, without a net flow.
 const PLAIN: FilmTheory = FilmTheory {
@@ -110,7 +112,9 @@ fn follow(
             };
             let mut lines = GasLines::default();
             lines.reset(1, reacting.channels().len());
-            reacting.respond(&around, span, &[0.0], &mut lines).unwrap();
+            reacting
+                .respond(&around, span, &[NetworkHeat::default()], &mut lines)
+                .unwrap();
             let keys = reacting.channels().iter().map(|one| one.key.unwrap());
             let channels = lines.slope.iter().zip(&lines.offset).zip(keys);
             let mut rates: Vec<f64> = channels.map(|((s, o), k)| s * composition[k] - o).collect();
@@ -559,7 +563,9 @@ fn a_reaction_of_order_zero_takes_from_a_cell_in_proportion_to_what_it_holds() {
     };
     let mut lines = GasLines::default();
     lines.reset(1, 1);
-    reacting.respond(&around, 1.0, &[0.0], &mut lines).unwrap();
+    reacting
+        .respond(&around, 1.0, &[NetworkHeat::default()], &mut lines)
+        .unwrap();
     let rate = lines.slope[0] * composition[0] - lines.offset[0];
     assert!(rate > 0.0);
     assert!((lines.local_slope[0] * composition[0] / rate - 1.0).abs() < 1e-6);
@@ -586,7 +592,9 @@ fn heat_that_would_take_a_particle_2_percent_from_its_integration_is_owed_to_it(
         for off in [share, 0.0] {
             let mut lines = GasLines::default();
             lines.reset(1, 1);
-            reacting.respond(&around, 1.0, &[0.0], &mut lines).unwrap();
+            reacting
+                .respond(&around, 1.0, &[NetworkHeat::default()], &mut lines)
+                .unwrap();
             let rates = [lines.slope[0] * composition[0] - lines.offset[0]];
             let followed = reacting.end[0];
             let mut left = reacting.amounts().to_vec();

@@ -8,7 +8,7 @@ use calcine_physics::sphere;
 
 use super::support::*;
 use super::verification::{DILUTE, KELVIN, RADIUS, diffusivity, dilute_gas, pellet, wide};
-use crate::model::{At, GasLines, ParticleModel, Transfer};
+use crate::model::{At, GasLines, NetworkHeat, ParticleModel, Transfer};
 use crate::radial::{PoreGas, Radial, RadialNumerics};
 use crate::reacting::{Rate, Reacting, Reaction, SolidChemistry};
 
@@ -110,8 +110,13 @@ fn with_fast_conduction_they_are_thin() {
         let lists = Lists::of(&still, RADIUS, 1);
         let mut lines = GasLines::default();
         lines.reset(1, 0);
-        thin.respond(&still.around(&lists), span, &[0.0], &mut lines)
-            .unwrap();
+        thin.respond(
+            &still.around(&lists),
+            span,
+            &[NetworkHeat::default()],
+            &mut lines,
+        )
+        .unwrap();
         let heat = [lines.conductance[0] * (still.temperature - lines.temperature[0])];
         let took = Transfer {
             heat: &heat,

@@ -8,7 +8,7 @@ use super::support::*;
 use super::verification::{
     DILUTE, FRONT, KELVIN, RADIUS, diffusivity, dilute_gas, first_order, front, pellet, wide,
 };
-use crate::model::{GasLines, ParticleModel, Transfer};
+use crate::model::{GasLines, NetworkHeat, ParticleModel, Transfer};
 use crate::radial::{PoreGas, Radial, RadialNumerics};
 
 /// Order by errors at twice the resolution each.
@@ -139,7 +139,12 @@ fn with_gas(windows: usize) -> f64 {
             let mut lines = GasLines::default();
             lines.reset(1, 0);
             model
-                .respond(&still.around(&lists), span, &[0.0], &mut lines)
+                .respond(
+                    &still.around(&lists),
+                    span,
+                    &[NetworkHeat::default()],
+                    &mut lines,
+                )
                 .unwrap();
             let (slope, at) = (lines.conductance[0], lines.temperature[0]);
             next = (stored * gas + span * slope * at) / (stored + span * slope);

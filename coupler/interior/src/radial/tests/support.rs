@@ -9,7 +9,7 @@ use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
 use calcine_physics::thermo::Mixture;
 
-use crate::model::{GasLines, Newcomer, ParticleModel, Surroundings, Transfer};
+use crate::model::{GasLines, NetworkHeat, Newcomer, ParticleModel, Surroundings, Transfer};
 use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid, ShellResolution};
 use crate::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use crate::thin::TEMPERATURE;
@@ -93,7 +93,8 @@ pub fn attempt_off(
     let mut lines = GasLines::default();
     lines.reset(count, channels);
     let network = vec![still.network; count];
-    model.respond(&around, span, &network, &mut lines).unwrap();
+    let given: Vec<NetworkHeat> = network.iter().map(|q| NetworkHeat::constant(*q)).collect();
+    model.respond(&around, span, &given, &mut lines).unwrap();
     let heat: Vec<f64> = (0..count)
         .map(|p| share * lines.conductance[p] * (still.temperature - lines.temperature[p]))
         .collect();
