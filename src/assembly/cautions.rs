@@ -31,7 +31,7 @@ fn explicit_packing(prepared: &PreparedCase) -> Option<String> {
         "`motion.parcels.packing` is \"explicit\", and by that of OpenFOAM's cloud beds become denser than close packing, {} here: it limits what the stress \
          does by velocities after the fall of the step, so that it does not carry the weight of a bed. The shipped bed at rest, close packing 0.6, has a solid \
          fraction of {layers} in its layers and of {cell} in a cell, and stands a third too low (one that floats at 0.4 m/s stands right to 1.2 %); write packing = \"implicit\", whose cells stay below close \
-         packing, or move the parcels natively (`--particles native`), where either packing keeps to it",
+         packing, or move the parcels natively (`--particles native`), where either packing keeps to it within 1 %",
         stress.close_packing
     ))
 }
