@@ -132,9 +132,9 @@ Foam::tensorField Foam::calcine::gas::besideToo
             count[N] += 1;
         }
     }
-    // Outlets count only beside faces along which gas slips.
+    // Outlets count only beside faces along which gas slips, of which opposite ones cancel.
     vectorField oneSided(mesh_.nCells(), Zero);
-    boolList slipping(mesh_.nCells(), false);
+    vectorField slipping(mesh_.nCells(), Zero);
     forAll(mesh_.boundary(), patchi)
     {
         const fvPatch& patch = mesh_.boundary()[patchi];
@@ -147,7 +147,7 @@ Foam::tensorField Foam::calcine::gas::besideToo
             oneSided[patch.faceCells()[i]] += normal_[patch.start() + i];
             if (slips(patchi))
             {
-                slipping[patch.faceCells()[i]] = true;
+                slipping[patch.faceCells()[i]] += normal_[patch.start() + i];
             }
         }
     }
@@ -156,7 +156,7 @@ Foam::tensorField Foam::calcine::gas::besideToo
     {
         if (count[celli] > 0)
         {
-            const scalar more = slipping[celli] ? free*magSqr(oneSided[celli]) : 0;
+            const scalar more = magSqr(slipping[celli]) > 1e-9 ? free*magSqr(oneSided[celli]) : 0;
             const scalar share = min(everywhere + more, scalar(1));
             mixed[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
         }

@@ -119,6 +119,9 @@ const MORE: f64 = 0.25;
 /// What they have in [`FreeCells::mix`].
 const FREE: f64 = 0.5;
 
+/// |Σ n|² of opposite faces.
+const OPPOSITE: f64 = 1e-9;
+
 /// Cells at faces of the boundary along which gas slips, where the cell's own velocity without its normal part is beside it. What is made of such a gradient
 /// and goes back into the values, as reaches of mass velocities and explicit stresses do, may be more than they were: on Kuhn's tetrahedra of boxes
 /// with free-slip sides, in cells of edges, 1.1 to 1.6 times. With a share s of the mean of the gradients of the cells beside it is not: 0.6 to 0.9
@@ -134,16 +137,20 @@ impl FreeCells {
         slip: impl Fn(usize) -> bool,
         free: impl Fn(usize) -> bool,
     ) -> Self {
-        let one_sided = |cell: usize| -> f64 {
+        let sum = |cell: usize, counts: &dyn Fn(usize) -> bool| -> Vec3 {
             let beyond = grid.links(cell).iter().filter(|link| link.is_boundary());
             let faces = beyond.map(|link| link.face as usize);
-            if !faces.clone().any(&slip) {
-                return 0.0;
-            }
             let normals = faces
-                .filter(|&face| slip(face) || free(face))
+                .filter(|&face| counts(face))
                 .map(|face| grid.faces[face].normal);
-            normals.sum::<Vec3>().norm_squared()
+            normals.sum()
+        };
+        let one_sided = |cell: usize| -> f64 {
+            let slipping = sum(cell, &slip);
+            match slipping.norm_squared() > OPPOSITE {
+                true => (slipping + sum(cell, &free)).norm_squared(),
+                false => 0.0,
+            }
         };
         let cells = (0..grid.cells()).map(|cell| (cell as u32, one_sided(cell)));
         Self(cells.filter(|&(_, square)| square > 0.0).collect())
