@@ -132,7 +132,7 @@ Foam::tensorField Foam::calcine::gas::besideToo
             count[N] += 1;
         }
     }
-    // Outlets count only beside faces along which gas slips, of which opposite ones cancel.
+    // Outlets count only beside faces along which gas slips, of which opposite ones, as the sides of wedges, cancel.
     vectorField oneSided(mesh_.nCells(), Zero);
     vectorField slipping(mesh_.nCells(), Zero);
     forAll(mesh_.boundary(), patchi)
@@ -156,7 +156,7 @@ Foam::tensorField Foam::calcine::gas::besideToo
     {
         if (count[celli] > 0)
         {
-            const scalar more = magSqr(slipping[celli]) > 1e-9 ? free*magSqr(oneSided[celli]) : 0;
+            const scalar more = magSqr(slipping[celli]) > 0.1 ? free*magSqr(oneSided[celli]) : 0;
             const scalar share = min(everywhere + more, scalar(1));
             mixed[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
         }

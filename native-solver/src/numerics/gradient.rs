@@ -119,8 +119,8 @@ const MORE: f64 = 0.25;
 /// What they have in [`FreeCells::mix`].
 const FREE: f64 = 0.5;
 
-/// |Σ n|² of opposite faces.
-const OPPOSITE: f64 = 1e-9;
+/// |Σ n|² up to which faces count as opposite ones, as the sides of wedges do.
+const OPPOSITE: f64 = 0.1;
 
 /// Cells at faces of the boundary along which gas slips, where the cell's own velocity without its normal part is beside it. What is made of such a gradient
 /// and goes back into the values, as reaches of mass velocities and explicit stresses do, may be more than they were: on Kuhn's tetrahedra of boxes
