@@ -270,7 +270,7 @@ mod tests {
         let row = |name: &str| rows.iter().find(|row| row[0] == name).unwrap().clone();
         assert_eq!(row("all")[5], "100.0 %");
         assert_eq!(row("all but the gas")[5], "60.0 %");
-        assert_eq!(row("all but the gas")[4].replace(' ', ""), "3.0ms");
+        assert_eq!(row("all but the gas")[4].replace(' ', ""), "3.00ms");
         assert!(rows.iter().all(|row| row[0] != "output"));
     }
 
