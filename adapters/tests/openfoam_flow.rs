@@ -183,7 +183,7 @@ fn air_passes_a_duct_that_leans_by_up_to_65_degrees() {
         let mut duct = Duct::launch_on(leaning, &air, folder.path());
         let fastest = fastest_after(&mut duct, (40, 5e-3), cells);
         assert!(
-            (fastest / expected - 1.0).abs() < 1e-3,
+            (fastest / expected - 1.0).abs() < 1e-5,
             "{degrees} degrees: {fastest}"
         );
     }

@@ -165,6 +165,15 @@ impl Outflows {
     /// Takes it up again.
     pub fn restore(&mut self, state: &StateFile) -> Result<(), StateFileError> {
         let places = state.u64s("outlet_places")?.as_chunks::<2>().0;
+        let named = places.iter().map(|&[outlet, _]| outlet as usize + 1);
+        let named = named.max().unwrap_or(0);
+        if named > self.outlets {
+            return Err(StateFileError::Length {
+                name: "outlets".into(),
+                found: named,
+                expected: self.outlets,
+            });
+        }
         let numbers = state.f64s_of("outlet_totals", NUMBERS * places.len())?;
         let numbers = numbers.as_chunks::<NUMBERS>().0;
         let totals = places.iter().zip(numbers);
@@ -223,5 +232,6 @@ mod tests {
         again.restore(&state).unwrap();
         assert_eq!(again.totals(), flows.totals());
         assert_eq!(again.arrivals, flows.arrivals);
+        assert!(Outflows::new(1).restore(&state).is_err());
     }
 }

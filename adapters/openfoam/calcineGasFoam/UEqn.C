@@ -10,6 +10,7 @@
 // were developed there.
 #include "gas.H"
 #include "convection.H"
+#include "slippingCells.H"
 #include "fvm.H"
 #include "fvc.H"
 
@@ -20,11 +21,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     const scalarField inertia(committed_.mass/window_.motionSpan);
     const volScalarField mu("mu", viscosity());
     const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(mu));
-    volTensorField gradU("gradU", fvc::grad(U_));
-    if (oblique_)
-    {
-        gradU.primitiveFieldRef() = besideToo(gradU.primitiveField(), 0, 0.5);
-    }
+    const volTensorField gradU("gradU", fvc::grad(U_));
 
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
@@ -45,7 +42,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     forAll(mesh_.boundary(), patchi)
     {
         const passage way = boundary_.of(patchi);
-        if (slips(patchi))
+        if (slips(U_.boundaryField()[patchi]))
         {
             stress.boundaryFieldRef()[patchi] = normalStress(patchi, mu, gradU);
         }

@@ -10,15 +10,7 @@
 // which damps each component by what it has of the normal: with that explicit, outer iterations diverge where nu dt/d2 is large. OpenFOAM's own
 // coefficients of such patches, |n_i| for each component, would enter A as their mean over the components.
 #include "gas.H"
-#include "basicSymmetryFvPatchFields.H"
-#include "wedgeFvPatchFields.H"
-
-bool Foam::calcine::gas::slips(label patchi) const
-{
-    const fvPatchVectorField& patch = U_.boundaryField()[patchi];
-    return isA<basicSymmetryFvPatchVectorField>(patch) || isA<wedgeFvPatchVectorField>(patch);
-}
-
+#include "slippingCells.H"
 
 void Foam::calcine::gas::updateNormalFriction(const scalarField& mu)
 {
@@ -26,7 +18,7 @@ void Foam::calcine::gas::updateNormalFriction(const scalarField& mu)
     normalStiffness_ = scalarField(mesh_.nFaces(), Zero);
     forAll(mesh_.boundary(), patchi)
     {
-        if (!slips(patchi))
+        if (!slips(U_.boundaryField()[patchi]))
         {
             continue;
         }
@@ -69,7 +61,7 @@ void Foam::calcine::gas::setNormalFriction(fvVectorMatrix& matrix, bool present)
 {
     forAll(mesh_.boundary(), patchi)
     {
-        if (!slips(patchi))
+        if (!slips(U_.boundaryField()[patchi]))
         {
             continue;
         }

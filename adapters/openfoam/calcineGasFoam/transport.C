@@ -11,6 +11,7 @@
 // duct, c is zero and resistances in series stay exact. Without c an excess A_t d^2 d2u_n/dn2 of friction
 // would remain on every mesh.
 #include "gas.H"
+#include "slippingCells.H"
 #include "emptyPolyPatch.H"
 
 Foam::tensorField Foam::calcine::gas::massVelocityGradient
@@ -104,68 +105,8 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 }
 
 
-// Of each cell's gradient a share is the mean of those of the cells beside it: one `everywhere`, and more at faces along which
-// gas slips, by `free` times |sum n|^2 of them. That keeps what is fed back bounded on tetrahedra (native-solver/src/numerics/gradient.rs, docs/theory.md).
-Foam::tensorField Foam::calcine::gas::besideToo
-(
-    const tensorField& gradient,
-    scalar everywhere,
-    scalar free
-) const
-{
-    const tensorField beyond(shared_.beyond(gradient));
-    tensorField sum(mesh_.nCells(), Zero);
-    scalarField count(mesh_.nCells(), Zero);
-    for (label facei = 0; facei < mesh_.nFaces(); ++facei)
-    {
-        if (!shared_.within(facei))
-        {
-            continue;
-        }
-        const label P = mesh_.faceOwner()[facei];
-        sum[P] += beyond[facei];
-        count[P] += 1;
-        if (facei < mesh_.nInternalFaces())
-        {
-            const label N = mesh_.faceNeighbour()[facei];
-            sum[N] += gradient[P];
-            count[N] += 1;
-        }
-    }
-    // Outlets count only beside faces along which gas slips, of which opposite ones, as the sides of wedges, cancel.
-    vectorField oneSided(mesh_.nCells(), Zero);
-    vectorField slipping(mesh_.nCells(), Zero);
-    forAll(mesh_.boundary(), patchi)
-    {
-        const fvPatch& patch = mesh_.boundary()[patchi];
-        if (boundary_.of(patchi) == passage::within || U_.boundaryField()[patchi].fixesValue())
-        {
-            continue;
-        }
-        forAll(patch, i)
-        {
-            oneSided[patch.faceCells()[i]] += normal_[patch.start() + i];
-            if (slips(patchi))
-            {
-                slipping[patch.faceCells()[i]] += normal_[patch.start() + i];
-            }
-        }
-    }
-    tensorField mixed(gradient);
-    forAll(mixed, celli)
-    {
-        if (count[celli] > 0)
-        {
-            const scalar more = magSqr(slipping[celli]) > 0.1 ? free*magSqr(oneSided[celli]) : 0;
-            const scalar share = min(everywhere + more, scalar(1));
-            mixed[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
-        }
-    }
-    return mixed;
-}
-
-
-// By least squares, exact for linear fields on any mesh; where nothing but the slope along the normal is given, zero, the value counts at
+// By least squares, exact for linear fields on any mesh, half of it the mean of the gradients of the cells beside, which keeps what is fed back bounded on
+// tetrahedra, and more in cells along whose faces gas slips; where nothing but the slope along the normal is given, zero, the value counts at
 // the foot of the normal.
 Foam::tensorField Foam::calcine::gas::obliqueGradient
 (
@@ -233,7 +174,8 @@ Foam::tensorField Foam::calcine::gas::obliqueGradient
     {
         sum[celli] = inv(ways[celli]) & sum[celli];
     }
-    return besideToo(sum, 0.5, 0.25);
+    mixBeside(U_, 0.5, 0.25, sum);
+    return sum;
 }
 
 

@@ -2,7 +2,8 @@
 //
 // `calcineLeastSquares`: the gradient g of a cell minimises sum (d.g - D)^2/d^2 over what is beside it, d the way there from its centre, D the
 // difference. On the boundary a given value counts at the centre of the face; where only the slope along the normal is known, zero, the
-// patch's value counts at the foot of the normal. Exact for linear fields on any mesh.
+// patch's value counts at the foot of the normal. Exact for linear fields on any mesh. Of a velocity, cells at faces along which gas slips take half of |sum n|^2 of
+// the mean of the gradients of the cells beside them (slippingCells.H).
 //
 // `calcineCorrected`: the slope along the normal of a face, over-relaxed,
 //
@@ -14,6 +15,7 @@
 // `calcineLinear`: linear interpolation to the centre of the face, beyond that to where the line between the centres meets it by the gradients
 // of fvSchemes on both sides. OpenFOAM's `skewCorrected linear` takes Gauss' gradients, which are not exact for linear fields on tetrahedra.
 #include "obliqueSchemes.H"
+#include "slippingCells.H"
 #include "emptyPolyPatch.H"
 #include "extrapolatedCalculatedFvPatchField.H"
 #include "gaussGrad.H"
@@ -23,6 +25,26 @@
 #include "snGradScheme.H"
 #include "surfaceFields.H"
 #include "volFields.H"
+
+namespace
+{
+
+using namespace Foam;
+
+// Share of the gradients beside a cell at faces along which gas slips, times |sum n|^2.
+const scalar beside = 0.5;
+
+void mixGradients(const volVectorField& field, volTensorField& gradient)
+{
+    calcine::mixBeside(field, 0, beside, gradient.primitiveFieldRef());
+}
+
+
+void mixGradients(const volScalarField&, volVectorField&)
+{}
+
+} // End anonymous namespace
+
 
 namespace Foam
 {
@@ -169,6 +191,7 @@ calcineGrad<Type>::calcGrad
     {
         gradient[celli] = inv(ways[celli]) & gradient[celli];
     }
+    mixGradients(field, gradient);
     gradient.correctBoundaryConditions();
     gaussGrad<Type>::correctBoundaryConditions(field, gradient);
     forAll(mesh.boundary(), patchi)
