@@ -128,6 +128,11 @@ void Foam::calcine::gas::step(report& result)
         {
             iterates.forget();
         }
+        const scalar friction = updateFriction();
+        if (outer == 1)
+        {
+            pace.begin(friction);
+        }
         // Friction at walls and what transport does at faces follow a longer sequence of corrections (native-solver/src/gas/friction.rs).
         follows_ = pace.corrections() > holding_;
         holdFriction();

@@ -29,13 +29,9 @@ scalar held(scalar friction, scalar between, scalar inertia, scalar diagonal)
 } // End anonymous namespace
 
 
-void Foam::calcine::gas::holdFriction()
+Foam::scalar Foam::calcine::gas::updateFriction()
 {
-    const scalarField& volume = mesh_.cellVolumes();
     const scalarField inertia(committed_.mass/window_.motionSpan + given_.dragCoefficient);
-    const scalarField diagonal(momentumDiagonal_*volume);
-    predicted_ = U_.primitiveField();
-    heldFriction_ = scalarField(mesh_.nFaces(), Zero);
     scalarField friction(mesh_.nCells(), Zero);
     const scalarField& upper = momentum_->upper();
     const scalarField& lower = momentum_->lower();
@@ -48,28 +44,61 @@ void Foam::calcine::gas::holdFriction()
     }
     forAll(mesh_.boundary(), patchi)
     {
+        const labelUList& cells = mesh_.boundary()[patchi].faceCells();
+        const scalarField across(boundaryFriction(patchi));
+        forAll(across, i)
+        {
+            friction[cells[i]] += across[i];
+        }
+    }
+    withoutFriction_ = 1 - friction/(momentumDiagonal_*mesh_.cellVolumes());
+    return gMax(scalarField(friction/inertia));
+}
+
+
+Foam::scalarField Foam::calcine::gas::boundaryFriction(label patchi) const
+{
+    const fvPatchVectorField& U = U_.boundaryField()[patchi];
+    scalarField friction(U.size(), Zero);
+    if (U.coupled() || U.fixesValue())
+    {
+        forAll(friction, i)
+        {
+            friction[i] = U.coupled()
+              ? max(momentum_->boundaryCoeffs()[patchi][i].x(), scalar(0))
+              : momentum_->internalCoeffs()[patchi][i].x();
+        }
+    }
+    return friction;
+}
+
+
+void Foam::calcine::gas::holdFriction()
+{
+    predicted_ = U_.primitiveField();
+    heldFriction_ = scalarField(mesh_.nFaces(), Zero);
+    if (follows_)
+    {
+        return;
+    }
+    const scalarField& volume = mesh_.cellVolumes();
+    const scalarField inertia(committed_.mass/window_.motionSpan + given_.dragCoefficient);
+    const scalarField diagonal(momentumDiagonal_*volume);
+    forAll(mesh_.boundary(), patchi)
+    {
         const fvPatch& patch = mesh_.boundary()[patchi];
-        const fvPatchVectorField& U = U_.boundaryField()[patchi];
-        if (!U.coupled() && !U.fixesValue())
+        if (U_.boundaryField()[patchi].coupled())
         {
             continue;
         }
-        forAll(patch, i)
+        const scalarField across(boundaryFriction(patchi));
+        forAll(across, i)
         {
             const label facei = patch.start() + i, celli = patch.faceCells()[i];
-            const scalar w = U.coupled()
-              ? max(momentum_->boundaryCoeffs()[patchi][i].x(), scalar(0))
-              : momentum_->internalCoeffs()[patchi][i].x();
-            friction[celli] += w;
-            if (!U.coupled() && !follows_)
-            {
-                const scalar area = mag(mesh_.faceAreas()[facei]);
-                const scalar between = w*area*ownerDistance_[facei]/volume[celli];
-                heldFriction_[facei] = held(w, between, inertia[celli], diagonal[celli]);
-            }
+            const scalar between = across[i]*mag(mesh_.faceAreas()[facei])*ownerDistance_[facei]/volume[celli];
+            heldFriction_[facei] = held(across[i], between, inertia[celli], diagonal[celli]);
         }
     }
-    withoutFriction_ = 1 - friction/diagonal;
 }
 
 

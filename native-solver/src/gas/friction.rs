@@ -96,14 +96,18 @@ impl WallFriction {
     }
 }
 
+/// Friction of a cell with what is beside it, in kg/s.
+pub fn of_cell(grid: &MeshGraph, momentum: &Momentum, cell: usize) -> f64 {
+    let links = grid.links(cell).iter();
+    links
+        .map(|link| momentum.friction(link.face as usize))
+        .sum()
+}
+
 /// The share of a cell's diagonal that is not friction, convection aside: by so much the first correction of an outer iteration, which
 /// overshoots by friction, moves the gradient that carries pressures along faces.
 pub fn share_without(grid: &MeshGraph, momentum: &Momentum, cell: usize) -> f64 {
-    let links = grid.links(cell).iter();
-    let friction: f64 = links
-        .map(|link| momentum.friction(link.face as usize))
-        .sum();
-    1.0 - friction / momentum.matrix.diagonal()[cell]
+    1.0 - of_cell(grid, momentum, cell) / momentum.matrix.diagonal()[cell]
 }
 
 #[cfg(test)]

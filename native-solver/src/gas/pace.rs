@@ -1,11 +1,17 @@
 //! What an outer loop does where, at the pace of momentum and continuity, it would not reach its tolerance within its iterations. An outer iteration
 //! takes twice as many pressure corrections as the case asks for, and again. Where the residual grows, or the most of them do not suffice, its
 //! iterations are accelerated ([`super::acceleration`]), which ends growth; and where it grows with acceleration and the most corrections, half as many
-//! are the most from then on: on stretched tetrahedra long sequences diverge.
+//! are the most from then on: on stretched tetrahedra long sequences diverge. Where friction is [`STIFF`] times the inertia of a cell, iterations begin with
+//! twice the case's corrections: two then multiply what the velocities of neighbours differ by in each iteration, on oblique lines by so much that
+//! no pace can be judged.
 
 use std::collections::VecDeque;
 
 use calcine_coupler::setup::GasControls;
+
+use super::attempt::AttemptFrame;
+use super::friction;
+use super::momentum::Momentum;
 
 /// Outer iterations over which a pace is judged: the first after a change still has what was there before.
 const PLAIN: usize = 3;
@@ -16,6 +22,19 @@ const RUNAWAY: f64 = 2.0;
 /// By so much the share of what iterations change becomes smaller where the residual grew, and where it ends.
 const DAMPED: f64 = 0.5;
 const LEAST: f64 = 0.25;
+
+/// Friction of a cell over its inertia and drag from which on iterations begin with longer sequences.
+const STIFF: f64 = 10.0;
+
+/// True where friction with what is beside it is [`STIFF`] times the inertia and drag of some cell.
+pub fn stiff(frame: &AttemptFrame<'_>, momentum: &Momentum) -> bool {
+    let grid = frame.grid;
+    (0..grid.cells()).any(|cell| {
+        let diagonal = momentum.matrix.diagonal()[cell];
+        let held = diagonal - momentum.transport(frame, cell);
+        friction::of_cell(grid, momentum, cell) > STIFF * held
+    })
+}
 
 /// What changes after an outer iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,15 +63,20 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// The case's number of corrections, at the residual before the first outer iteration.
-    pub fn new(controls: &GasControls, residual: f64) -> Self {
+    /// The case's number of corrections, at the residual before the first outer iteration; twice as many where the gas is [`stiff`].
+    pub fn new(controls: &GasControls, residual: f64, stiff: bool) -> Self {
         let corrections = controls.pressure_corrections.max(1);
+        let most = controls.most_pressure_corrections.max(corrections);
         Self {
-            corrections,
+            corrections: if stiff {
+                (2 * corrections).min(most)
+            } else {
+                corrections
+            },
             accelerated: false,
             share: 1.0,
             fewest: corrections,
-            most: controls.most_pressure_corrections.max(corrections),
+            most,
             residuals: VecDeque::from([residual]),
         }
     }
@@ -133,7 +157,7 @@ mod tests {
 
     /// The pace after outer iterations that multiply the residual by a factor each.
     fn after(factor: f64, iterations: u32) -> Pace {
-        let mut pace = Pace::new(&controls(), 1.0);
+        let mut pace = Pace::new(&controls(), 1.0, false);
         for outer in 1..=iterations {
             pace.judge(&controls(), outer, factor.powi(outer as i32));
         }
@@ -146,6 +170,7 @@ mod tests {
         let pace = after(0.39, 19);
         assert_eq!((pace.corrections, pace.accelerated), (2, false));
         assert_eq!([2, 3].map(|done| after(0.41, done).corrections), [2, 4]);
+        assert_eq!(Pace::new(&controls(), 1.0, true).corrections, 4);
     }
 
     #[test]
@@ -173,7 +198,7 @@ mod tests {
 
     #[test]
     fn corrections_halve_where_the_residual_grows_with_the_most() {
-        let mut pace = Pace::new(&controls(), 1.0);
+        let mut pace = Pace::new(&controls(), 1.0, false);
         let mut changes = Vec::new();
         for outer in 1..60 {
             let last = pace.corrections;
