@@ -14,6 +14,9 @@ namespace
 using namespace Foam;
 
 // w - w' in kg/s, by w, g, i and a in kg/s.
+// Part of a line between two centres along their face, over the one along its normal, from which on it counts as oblique: 6 degrees.
+const scalar obliqueness = 0.1;
+
 scalar held(scalar friction, scalar between, scalar inertia, scalar diagonal)
 {
     if (!(friction > 0))
@@ -52,7 +55,31 @@ Foam::scalar Foam::calcine::gas::updateFriction()
         }
     }
     withoutFriction_ = 1 - friction/(momentumDiagonal_*mesh_.cellVolumes());
-    return gMax(scalarField(friction/inertia));
+    scalar largest = 0;
+    const auto offer = [&](label celli)
+    {
+        largest = max(largest, friction[celli]/inertia[celli]);
+    };
+    for (label facei = 0; facei < mesh_.nFaces(); ++facei)
+    {
+        if (shared_.within(facei) && leans(facei))
+        {
+            offer(mesh_.faceOwner()[facei]);
+            if (facei < mesh_.nInternalFaces())
+            {
+                offer(mesh_.faceNeighbour()[facei]);
+            }
+        }
+    }
+    reduce(largest, maxOp<scalar>());
+    return largest;
+}
+
+
+bool Foam::calcine::gas::leans(label facei) const
+{
+    return mag(ownerSkew_[facei]) > obliqueness*ownerDistance_[facei]
+        || mag(neighbourSkew_[facei]) > obliqueness*neighbourDistance_[facei];
 }
 
 

@@ -1,9 +1,9 @@
 //! What an outer loop does where, at the pace of momentum and continuity, it would not reach its tolerance within its iterations. An outer iteration
 //! takes twice as many pressure corrections as the case asks for, and again. Where the residual grows, or the most of them do not suffice, its
 //! iterations are accelerated ([`super::acceleration`]), which ends growth; and where it grows with acceleration and the most corrections, half as many
-//! are the most from then on: on stretched tetrahedra long sequences diverge. Where friction is [`STIFF`] times the inertia of a cell, iterations begin with
-//! twice the case's corrections: two then multiply what the velocities of neighbours differ by in each iteration, on oblique lines by so much that
-//! no pace can be judged.
+//! are the most from then on: on stretched tetrahedra long sequences diverge. On oblique lines, where friction is [`STIFF`] times the inertia of a cell,
+//! iterations begin with twice the case's corrections: two then multiply in each what the velocities of neighbours differ by, so much that no pace can be
+//! judged.
 
 use std::collections::VecDeque;
 
@@ -25,15 +25,22 @@ const LEAST: f64 = 0.25;
 
 /// Friction of a cell over its inertia and drag from which on iterations begin with longer sequences.
 const STIFF: f64 = 10.0;
+/// Part of a line between two centres along their face, over the one along its normal, from which on it counts as oblique: 6 degrees.
+const OBLIQUE: f64 = 0.1;
 
-/// True where friction with what is beside it is [`STIFF`] times the inertia and drag of some cell.
+/// True where friction is [`STIFF`] times the inertia and drag of a cell with a neighbour whose line is oblique.
 pub fn stiff(frame: &AttemptFrame<'_>, momentum: &Momentum) -> bool {
     let grid = frame.grid;
-    (0..grid.cells()).any(|cell| {
-        let diagonal = momentum.matrix.diagonal()[cell];
-        let held = diagonal - momentum.transport(frame, cell);
-        friction::of_cell(grid, momentum, cell) > STIFF * held
-    })
+    let oblique = |cell: usize| {
+        let mut links = grid.links(cell).iter();
+        links.any(|link| !link.is_boundary() && grid.faces[link.face as usize].leans(OBLIQUE))
+    };
+    !grid.orthogonal
+        && (0..grid.cells()).any(|cell| {
+            let diagonal = momentum.matrix.diagonal()[cell];
+            let held = diagonal - momentum.transport(frame, cell);
+            friction::of_cell(grid, momentum, cell) > STIFF * held && oblique(cell)
+        })
 }
 
 /// What changes after an outer iteration.

@@ -61,6 +61,13 @@ impl Face {
         weight * self.owner_skew - (1.0 - weight) * self.neighbour_skew
     }
 
+    /// True where a half of the line between two centres has more than this share of its length along the normal along the face.
+    pub fn leans(&self, share: f64) -> bool {
+        let half = |along: &Vec3, across: f64| along.norm() > share * across;
+        half(&self.owner_skew, self.owner_distance)
+            || half(&self.neighbour_skew, self.neighbour_distance)
+    }
+
     /// Weight of the owner in linear interpolation.
     #[inline]
     pub fn owner_weight(&self) -> f64 {

@@ -4,6 +4,8 @@
 //! its own surface as it goes. Then heat is booked by the means of both, which is what it took where the others came to what they were
 //! taken to be.
 
+use std::mem;
+
 use super::HeatNetwork;
 use crate::model::{NetworkHeat, SurfaceMean, SurfaceNetwork};
 
@@ -15,43 +17,53 @@ impl HeatNetwork {
     pub fn told(&self, out: &mut Vec<NetworkHeat>) {
         let count = self.heat.len();
         let work = &self.work;
-        let mut beside = vec![SurfaceNetwork::default(); count];
+        out.clear();
+        out.extend(self.heat.iter().map(|&mean| NetworkHeat {
+            mean,
+            beside: Some(SurfaceNetwork::default()),
+        }));
+        let mut add = |row: usize, part: SurfaceNetwork| {
+            let own = out[row].beside.get_or_insert_default();
+            own.conductance += part.conductance;
+            own.conducted += part.conducted;
+            own.area += part.area;
+            own.seen += part.seen;
+        };
+        let touch = |conductance: f64, other: f64| SurfaceNetwork {
+            conductance,
+            conducted: conductance * other,
+            ..Default::default()
+        };
+        let see = |area: f64, other: f64| SurfaceNetwork {
+            area,
+            seen: area * other.powi(4),
+            ..Default::default()
+        };
         for &([i, j], g) in &work.bonds[..work.solid] {
-            for (own, other) in [(i, j), (j, i)] {
-                beside[own].conductance += g;
-                beside[own].conducted += g * work.temperature[other];
-            }
+            add(i, touch(g, work.temperature[j]));
+            add(j, touch(g, work.temperature[i]));
         }
         for &([i, reservoir], g) in &work.reservoir_links[..work.walled] {
-            beside[i].conductance += g;
-            beside[i].conducted += g * work.reservoirs[reservoir];
+            add(i, touch(g, work.reservoirs[reservoir]));
         }
         let shift = work.nodes - count;
         for ([i, j], area) in self.radiation.pairs() {
-            for (own, other) in [(i, j), (j, i)] {
-                beside[own].area += area;
-                beside[own].seen += area * work.seen[other + shift].powi(4);
-            }
+            add(i, see(area, work.seen[j + shift]));
+            add(j, see(area, work.seen[i + shift]));
         }
         for ([i, reservoir], area) in self.radiation.links() {
-            beside[i].area += area;
-            beside[i].seen += area * work.reservoirs[reservoir].powi(4);
+            add(i, see(area, work.reservoirs[reservoir]));
         }
         if shift > 0 {
             // The radiosity, which stores nothing, is eliminated.
-            for (row, own) in beside.iter_mut().enumerate() {
+            for (row, told) in out.iter_mut().enumerate() {
+                let own = told.beside.get_or_insert_default();
                 let share = self.radiation.own(row);
                 let share = share / (share + own.area);
                 own.area *= share;
                 own.seen *= share;
             }
         }
-        out.clear();
-        let all = self.heat.iter().zip(beside);
-        out.extend(all.map(|(mean, beside)| NetworkHeat {
-            mean: *mean,
-            beside: Some(beside),
-        }));
     }
 
     /// Books the heat anew by the means of the surfaces of those particles that followed what they were `told`. The result is how much
@@ -73,11 +85,12 @@ impl HeatNetwork {
         warmer.resize(count, 0.0);
         let shift = work.nodes - count;
         // Temperatures of surfaces, and fourth powers where they radiate, by means where there are some.
-        let mut kelvin = work.temperature[..count].to_vec();
-        let mut shines: Vec<f64> = work.seen[shift..shift + count]
-            .iter()
-            .map(|kelvin| kelvin.powi(4))
-            .collect();
+        let (mut kelvin, mut shines) = (mem::take(&mut work.kelvin), mem::take(&mut work.shines));
+        kelvin.clear();
+        kelvin.extend_from_slice(&work.temperature[..count]);
+        shines.clear();
+        let seen = work.seen[shift..shift + count].iter();
+        shines.extend(seen.map(|kelvin| kelvin.powi(4)));
         for (row, mean) in means.iter().enumerate() {
             let (Some(mean), Some(beside)) = (mean, told[row].beside) else {
                 continue;
@@ -120,6 +133,7 @@ impl HeatNetwork {
             reservoir_heat[reservoir] += flow;
             all += flow.abs();
         }
+        (work.kelvin, work.shines) = (kelvin, shines);
         let mut apart = 0.0;
         for (row, mean) in means.iter().enumerate() {
             if let (Some(mean), Some(beside)) = (mean, told[row].beside) {

@@ -134,6 +134,9 @@ struct Work {
     temperature: Vec<f64>,
     /// The same of surfaces that radiate as warmer ones.
     seen: Vec<f64>,
+    /// Mean temperatures in K, and fourth powers that surfaces radiate by in K⁴, while heat is booked by means.
+    kelvin: Vec<f64>,
+    shines: Vec<f64>,
     last: Vec<f64>,
     means: SpanMeans,
     /// How many of the bonds and links are contacts, and how many nodes are particles'.

@@ -73,39 +73,3 @@ pub fn prism_box(spec: &BoxSpec, displaced: impl Fn(Vec3) -> Vec3) -> Result<Mes
     }
     Mesh::new(joined(points, faces, &names, displaced))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn prisms_fill_the_box() {
-        let spec = BoxSpec {
-            origin: Vec3::zeros(),
-            size: Vec3::new(2.0, 1.0, 0.5),
-            cells: [4, 3, 2],
-            patches: ["in", "out", "wall", "wall", "floor", "lid"].map(str::to_owned),
-        };
-        let mesh = prism_box(&spec, |point| point).unwrap();
-        assert_eq!(mesh.cells(), 2 * 24);
-        let volumes = mesh.cell_volume();
-        assert!(
-            volumes
-                .iter()
-                .all(|volume| (volume - 1.0 / 48.0).abs() < 1e-15)
-        );
-        let out = |name: &str| {
-            let faces = mesh.patch(name).unwrap().faces();
-            faces.map(|face| mesh.face_area()[face]).sum::<Vec3>()
-        };
-        for (name, area) in [
-            ("in", Vec3::new(-0.5, 0.0, 0.0)),
-            ("out", Vec3::new(0.5, 0.0, 0.0)),
-            ("wall", Vec3::zeros()),
-            ("floor", Vec3::new(0.0, 0.0, -2.0)),
-            ("lid", Vec3::new(0.0, 0.0, 2.0)),
-        ] {
-            assert!((out(name) - area).norm() < 1e-14, "{name}");
-        }
-    }
-}

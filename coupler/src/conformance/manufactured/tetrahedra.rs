@@ -45,32 +45,35 @@ fn side(spec: &BoxSpec, triangle: &[u32; 3]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::prisms::prism_box;
     use super::*;
 
     #[test]
-    fn tetrahedra_fill_the_box() {
+    fn prisms_and_tetrahedra_fill_the_box() {
         let spec = BoxSpec {
             origin: Vec3::zeros(),
             size: Vec3::new(2.0, 1.0, 0.5),
             cells: [4, 3, 2],
             patches: ["in", "out", "wall", "wall", "floor", "lid"].map(str::to_owned),
         };
-        let mesh = tetrahedron_box(&spec, |point| point).unwrap();
-        assert_eq!(mesh.cells(), 6 * 24);
-        let alike = |volume: &f64| (volume - 1.0 / 144.0).abs() < 1e-15;
-        assert!(mesh.cell_volume().iter().all(alike));
-        let out = |name: &str| {
-            let faces = mesh.patch(name).unwrap().faces();
-            faces.map(|face| mesh.face_area()[face]).sum::<Vec3>()
-        };
-        for (name, area) in [
-            ("in", Vec3::new(-0.5, 0.0, 0.0)),
-            ("out", Vec3::new(0.5, 0.0, 0.0)),
-            ("wall", Vec3::zeros()),
-            ("floor", Vec3::new(0.0, 0.0, -2.0)),
-            ("lid", Vec3::new(0.0, 0.0, 2.0)),
-        ] {
-            assert!((out(name) - area).norm() < 1e-14, "{name}");
+        let prisms = prism_box(&spec, |point| point).unwrap();
+        let tetrahedra = tetrahedron_box(&spec, |point| point).unwrap();
+        for (mesh, of_each) in [(prisms, 2), (tetrahedra, 6)] {
+            assert_eq!(mesh.cells(), of_each * 24);
+            let each = 1.0 / (24 * of_each) as f64;
+            let alike = |volume: &f64| (volume - each).abs() < 1e-15;
+            assert!(mesh.cell_volume().iter().all(alike));
+            for (name, area) in [
+                ("in", Vec3::new(-0.5, 0.0, 0.0)),
+                ("out", Vec3::new(0.5, 0.0, 0.0)),
+                ("wall", Vec3::zeros()),
+                ("floor", Vec3::new(0.0, 0.0, -2.0)),
+                ("lid", Vec3::new(0.0, 0.0, 2.0)),
+            ] {
+                let faces = mesh.patch(name).unwrap().faces();
+                let sum = faces.map(|face| mesh.face_area()[face]).sum::<Vec3>();
+                assert!((sum - area).norm() < 1e-14, "{name}");
+            }
         }
     }
 }
