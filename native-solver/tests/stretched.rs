@@ -202,11 +202,11 @@ fn graded_tetrahedra() -> Arc<Mesh> {
 }
 
 /// A flow that starts from rest between walls without friction is uniform at once, in all cells: those at edges of two of them, and of one and the outlet, too. ν Δt/h²
-/// from 6e-5 to 6, Courant numbers from 0.02 to 3.
+/// from 6e-5 to 570, Courant numbers from 0.02 to 3.
 #[test]
 fn a_flow_between_walls_without_friction_is_uniform_in_every_tetrahedron() {
     let mesh = graded_tetrahedra();
-    for viscosity in [1e-4, 1e-2, 0.1] {
+    for viscosity in [1e-4, 1e-2, 0.1, 1.0, 10.0] {
         for window in [2e-3, 0.02, 0.2] {
             let mut setup = setup(&[
                 ("in", inlet(1.0, 300.0)),

@@ -128,10 +128,10 @@ void Foam::calcine::gas::step(report& result)
         {
             iterates.forget();
         }
-        const scalar friction = updateFriction();
-        if (outer == 1)
+        updateFriction();
+        if (oblique_ && outer == 1)
         {
-            pace.begin(friction);
+            pace.begin(largestFriction());
         }
         // Friction at walls and what transport does at faces follow a longer sequence of corrections (native-solver/src/gas/friction.rs).
         follows_ = pace.corrections() > holding_;

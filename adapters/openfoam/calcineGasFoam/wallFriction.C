@@ -13,10 +13,10 @@ namespace
 
 using namespace Foam;
 
-// w - w' in kg/s, by w, g, i and a in kg/s.
-// Part of a line between two centres along their face, over the one along its normal, from which on it counts as oblique: 6 degrees.
+// Part along the face of half a line between two centres, over that along the normal, above which the line is oblique: 6 degrees.
 const scalar obliqueness = 0.1;
 
+// w - w' in kg/s, by w, g, i and a in kg/s.
 scalar held(scalar friction, scalar between, scalar inertia, scalar diagonal)
 {
     if (!(friction > 0))
@@ -32,9 +32,8 @@ scalar held(scalar friction, scalar between, scalar inertia, scalar diagonal)
 } // End anonymous namespace
 
 
-Foam::scalar Foam::calcine::gas::updateFriction()
+void Foam::calcine::gas::updateFriction()
 {
-    const scalarField inertia(committed_.mass/window_.motionSpan + given_.dragCoefficient);
     scalarField friction(mesh_.nCells(), Zero);
     const scalarField& upper = momentum_->upper();
     const scalarField& lower = momentum_->lower();
@@ -55,6 +54,13 @@ Foam::scalar Foam::calcine::gas::updateFriction()
         }
     }
     withoutFriction_ = 1 - friction/(momentumDiagonal_*mesh_.cellVolumes());
+}
+
+
+Foam::scalar Foam::calcine::gas::largestFriction() const
+{
+    const scalarField inertia(committed_.mass/window_.motionSpan + given_.dragCoefficient);
+    const scalarField friction((1 - withoutFriction_)*momentumDiagonal_*mesh_.cellVolumes());
     scalar largest = 0;
     const auto offer = [&](label celli)
     {

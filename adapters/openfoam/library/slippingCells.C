@@ -68,12 +68,16 @@ void Foam::calcine::mixBeside
         return;
     }
     const fvMesh& mesh = velocity.mesh();
+    const scalarField share(min(everywhere + more*oneSided(velocity), scalar(1)));
     tensorField sum(mesh.nCells(), Zero);
     scalarField count(mesh.nCells(), Zero);
     const auto add = [&](label celli, const tensor& beside)
     {
-        sum[celli] += beside;
-        count[celli] += 1;
+        if (share[celli] > 0)
+        {
+            sum[celli] += beside;
+            count[celli] += 1;
+        }
     };
     for (label facei = 0; facei < mesh.nInternalFaces(); ++facei)
     {
@@ -94,13 +98,11 @@ void Foam::calcine::mixBeside
             }
         }
     }
-    const scalarField squares(oneSided(velocity));
     forAll(gradient, celli)
     {
         if (count[celli] > 0)
         {
-            const scalar share = min(everywhere + more*squares[celli], scalar(1));
-            gradient[celli] = (1 - share)*gradient[celli] + (share/count[celli])*sum[celli];
+            gradient[celli] = (1 - share[celli])*gradient[celli] + (share[celli]/count[celli])*sum[celli];
         }
     }
 }

@@ -25,10 +25,14 @@ use calcine_coupler::physics::Vec3;
 use super::attempt::AttemptFrame;
 use super::momentum::Momentum;
 use crate::numerics::grid::MeshGraph;
-use crate::numerics::parallel::fill;
+use crate::numerics::parallel::{fill, largest};
 
 /// With more corrections than this in an outer iteration nothing of the friction at walls is held.
 pub const HELD: u32 = 2;
+
+/// Part along the face of half a line between two centres, over that along the normal, above which the line is oblique: 6°. Below it two corrections
+/// converge at any viscosity that was tried, as on upright cells and wedges.
+const OBLIQUE: f64 = 0.1;
 
 /// What the corrections of an outer iteration hold of the friction at walls.
 #[derive(Debug, Default)]
@@ -104,6 +108,28 @@ pub fn of_cell(grid: &MeshGraph, momentum: &Momentum, cell: usize) -> f64 {
         .sum()
 }
 
+/// The largest friction of a cell with an oblique line to a neighbour, over the cell's inertia and drag.
+pub fn largest_share(frame: &AttemptFrame<'_>, momentum: &Momentum) -> f64 {
+    let grid = frame.grid;
+    if grid.orthogonal {
+        return 0.0;
+    }
+    let share = |cell: usize| match leans(grid, cell) {
+        true => {
+            let held = momentum.matrix.diagonal()[cell] - momentum.transport(frame, cell);
+            of_cell(grid, momentum, cell) / held
+        }
+        false => 0.0,
+    };
+    largest(grid.cells(), share).1
+}
+
+/// True where the line to a neighbour has more along its face than [`OBLIQUE`] allows.
+fn leans(grid: &MeshGraph, cell: usize) -> bool {
+    let mut links = grid.links(cell).iter();
+    links.any(|link| !link.is_boundary() && grid.faces[link.face as usize].leans(OBLIQUE))
+}
+
 /// The share of a cell's diagonal that is not friction, convection aside: by so much the first correction of an outer iteration, which
 /// overshoots by friction, moves the gradient that carries pressures along faces.
 pub fn share_without(grid: &MeshGraph, momentum: &Momentum, cell: usize) -> f64 {
@@ -112,7 +138,19 @@ pub fn share_without(grid: &MeshGraph, momentum: &Momentum, cell: usize) -> f64 
 
 #[cfg(test)]
 mod tests {
+    use calcine_coupler::conformance::manufactured::meshes::{CellShape, shaped_box};
+
     use super::*;
+
+    #[test]
+    fn lines_are_oblique_from_a_tenth_on() {
+        for (shear, oblique) in [(0.0995, false), (0.1005, true)] {
+            let lean = |point: Vec3| Vec3::new(point.x + shear * point.z, point.y, point.z);
+            let mesh = shaped_box(CellShape::Hexahedra(0.0), 3, lean).unwrap();
+            let grid = MeshGraph::new(&mesh);
+            assert!((0..grid.cells()).all(|cell| leans(&grid, cell) == oblique));
+        }
+    }
 
     #[test]
     fn a_wall_pulls_as_the_layer_that_an_implicit_step_makes() {

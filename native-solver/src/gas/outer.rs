@@ -11,9 +11,10 @@ use super::attempt::{AttemptFrame, CellProperties};
 use super::chemistry::{CellChemistry, ReactionSource, ScalarEquations};
 use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
+use super::friction;
 use super::guard;
 use super::momentum::Momentum;
-use super::pace::{self, Pace, PaceChange};
+use super::pace::{Pace, PaceChange};
 use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
@@ -156,7 +157,8 @@ impl Equations {
         self.closer = 1.0;
         self.watch = Stopwatch::of_window(self.windows, frame.grid.cells());
         self.assess_flow(frame, now);
-        let mut pace = Pace::new(controls, self.flow, pace::stiff(frame, &self.momentum));
+        let friction = friction::largest_share(frame, &self.momentum);
+        let mut pace = Pace::new(controls, self.flow, friction);
         self.best.flow = None;
         for outer in 1..=controls.outer_iterations.max(1) {
             if pace.accelerated {

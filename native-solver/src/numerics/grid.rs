@@ -61,7 +61,7 @@ impl Face {
         weight * self.owner_skew - (1.0 - weight) * self.neighbour_skew
     }
 
-    /// True where a half of the line between two centres has more than this share of its length along the normal along the face.
+    /// True where half of the line between two centres has more along the face than this share of what it has along the normal.
     pub fn leans(&self, share: f64) -> bool {
         let half = |along: &Vec3, across: f64| along.norm() > share * across;
         half(&self.owner_skew, self.owner_distance)
