@@ -1,4 +1,7 @@
-"""Results folders as xarray and pandas."""
+"""Results folders as xarray and pandas.
+
+h5py, pandas and xarray are imported where results are read, so that a run starts without them.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,14 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
-import pandas as pd
-import xarray as xr
 
 from ._calcine import CaseError
 
 if TYPE_CHECKING:
+    import h5py
+    import pandas as pd
+    import xarray as xr
     from matplotlib.axes import Axes
 
 
@@ -49,6 +52,8 @@ class Results:
 
         Columns have the names of the file without units, which are in ``attrs["units"]``.
         """
+        import pandas as pd
+
         text = (self.folder / "series.csv").read_text(encoding="utf-8")
         # A run that goes on, or was killed, may have written part of a line.
         head, *rows = csv.reader(text[: text.rfind("\n") + 1].splitlines())
@@ -69,6 +74,8 @@ class Results:
 
     def fields(self) -> xr.Dataset:
         """Gas fields of all snapshots over ``process_time`` (s) and ``cell``, with the centres (m) and volumes (m³) of cells."""
+        import xarray as xr
+
         with self._store() as store:
             snapshots = [store["snapshots"][key] for key in sorted(store["snapshots"])]
             times = [float(one.attrs["process_time"]) for one in snapshots]
@@ -85,6 +92,8 @@ class Results:
 
         Vectors are columns such as ``position.x``. ``attrs`` has ``units`` and ``process_time`` (s).
         """
+        import pandas as pd
+
         with self._store() as store:
             group = store["snapshots"][sorted(store["snapshots"])[snapshot]]
             columns, units = {}, {}
@@ -109,6 +118,8 @@ class Results:
         ``attrs`` has the interval ``from`` and ``to``, and how much of it was ``averaged`` (s). Those of particles are NaN in cells that
         held none.
         """
+        import xarray as xr
+
         with self._store() as store:
             if "means" not in store:
                 raise CaseError(
@@ -174,6 +185,8 @@ class Results:
         }
 
     def _store(self) -> h5py.File:
+        import h5py
+
         path = self.folder / "results.h5"
         if not path.is_file():
             raise CaseError(f"{path} is not there: the run was made without HDF5")

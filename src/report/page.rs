@@ -26,6 +26,24 @@ pub(crate) fn escape(text: &str) -> String {
     safe
 }
 
+/// A sentence made safe for HTML, with what stands between backticks as code.
+pub(crate) fn sentence(text: &str) -> String {
+    let mut html = String::with_capacity(text.len());
+    let mut parts = text.split('`').peekable();
+    let mut code = false;
+    while let Some(part) = parts.next() {
+        // A backtick without a second one is itself.
+        let closed = parts.peek().is_some();
+        match code {
+            true if closed => html.push_str(&format!("<code>{}</code>", escape(part))),
+            true => html.push_str(&format!("`{}", escape(part))),
+            false => html.push_str(&escape(part)),
+        }
+        code = !code;
+    }
+    html
+}
+
 /// A page in the making.
 pub(crate) struct Page {
     body: String,
@@ -203,4 +221,19 @@ pub(crate) fn bars(entries: &[(&str, f64, String)]) -> String {
         })
         .collect();
     format!("<div class=\"bars\">{rows}</div>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sentence;
+
+    #[test]
+    fn words_between_backticks_are_code() {
+        assert_eq!(
+            sentence("a < b of `x & y`; `z`"),
+            "a &lt; b of <code>x &amp; y</code>; <code>z</code>"
+        );
+        assert_eq!(sentence("a lone ` stays"), "a lone ` stays");
+        assert_eq!(sentence("`a` and `b"), "<code>a</code> and `b");
+    }
 }

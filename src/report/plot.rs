@@ -91,8 +91,8 @@ const GAP: f64 = 8.0;
 /// Half the width of the mark of what is expected.
 const MARK: f64 = 6.0;
 
-/// Width of a letter of the labels, about.
-const LETTER: f64 = 7.0;
+/// Width of a digit of the labels in wide fonts (0.64 em) at the largest size that the style sheet gives them, 13.5.
+const LETTER: f64 = 8.6;
 
 /// The middle of a label about a place along x, shifted so that none of its letters is cut off.
 fn within_picture(at: f64, label: &str) -> f64 {

@@ -1,6 +1,6 @@
 //! What the case was warned of, what was outside the ranges of laws, or did not converge, and the error with which a run ended.
 
-use super::page::{escape, table};
+use super::page::{escape, sentence, table};
 use crate::results::Summary;
 
 /// Empty where there is nothing to tell.
@@ -12,13 +12,13 @@ pub(super) fn render(summary: &Summary) -> String {
             format!(
                 "<p>The run ended with exit code {}: {}</p>",
                 failure.code,
-                escape(&failure.message)
+                sentence(&failure.message)
             )
         });
     if !summary.case_warnings.is_empty() {
         let lines = summary.case_warnings.iter();
         let lines: Vec<String> = lines
-            .map(|one| format!("<li>{}</li>", escape(one)))
+            .map(|one| format!("<li>{}</li>", sentence(one)))
             .collect();
         html.push_str(&format!(
             "<p>Of the case, as <code>calcine check</code> tells them:</p><ul>{}</ul>",
@@ -33,7 +33,7 @@ pub(super) fn render(summary: &Summary) -> String {
                 escape(name),
                 format!("{} of {}", warning.windows, summary.windows),
                 warning.count.to_string(),
-                escape(&warning.sentence()),
+                sentence(&warning.sentence()),
             ]
         })
         .collect();

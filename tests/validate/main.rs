@@ -39,6 +39,7 @@ mod program;
 #[path = "../fuzz/random.rs"]
 #[allow(dead_code)]
 mod random;
+mod report_pages;
 mod repose;
 #[cfg(feature = "hdf5")]
 mod restarts;
@@ -92,6 +93,7 @@ const ALL: &[(&str, fn())] = &[
     ("moving-resolved-bed", moving_bed::run_resolved),
     ("parcel-beds", parcel_beds::run),
     ("repose", repose::run),
+    ("report-pages", report_pages::run),
     #[cfg(feature = "hdf5")]
     ("restarts", restarts::run),
     ("shaft-choices", shaft_choices::run),

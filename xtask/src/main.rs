@@ -68,7 +68,7 @@ usage: cargo xtask TASK
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, drum-restarts, elastic-box, external-restarts, flame,
                           fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, parcel-beds,
-                          repose, restarts, shaft-choices, shaft-flames,
+                          repose, report-pages, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, slurm,
                           spouted-bed, square-cylinder, tg-furnace, voids";
 
