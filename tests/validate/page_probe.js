@@ -8,10 +8,11 @@
   addEventListener("unhandledrejection", (event) => note("rejection", String(event.reason)));
   for (const kind of ["error", "warn"]) console[kind] = (...words) => note(kind, words.join(" "));
   const draw = WebGL2RenderingContext.prototype;
-  for (const [name, at] of [["drawElementsInstanced", 4], ["drawArraysInstanced", 3]]) {
+  // Spheres are instances, or points where they are small.
+  for (const [name, at] of [["drawArraysInstanced", 3], ["drawArrays", 2]]) {
     const own = draw[name];
     draw[name] = function (...words) {
-      spheres = Math.max(spheres, words[at]);
+      if (at === 3 || words[0] === this.POINTS) spheres = Math.max(spheres, words[at]);
       const result = own.apply(this, words);
       const code = this.getError();
       if (code) note("webgl", code);
@@ -51,6 +52,7 @@
   // The clock of the browser runs ahead of its threads that unpack the bed, except while an answer is awaited.
   addEventListener("load", async () => {
     const view = document.querySelector(".bed-view");
+    view?.scrollIntoView();
     for (let k = 0; k < (view ? 20 : 1) && !spheres; k++) await fetch("/hold");
     await fetch("/hold");
     const result = document.createElement("script");
