@@ -243,6 +243,11 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
         ),
         (
             "a.dump",
+            &format!("{dump}2 0 0 1\n\n3 0 0 2\n"),
+            "a.dump, line 9: 2 atoms are announced by \"ITEM: NUMBER OF ATOMS\", but there are more",
+        ),
+        (
+            "a.dump",
             "nothing",
             "a.dump: it is none of .csv, .dat, .vtk, .vtu, .vtp, nor does it begin with \"ITEM:\" as a LIGGGHTS dump does",
         ),

@@ -37,13 +37,34 @@ fn the_line_has_exit_code_folder_report_and_summary() {
 }
 
 #[test]
-fn a_stopped_run_has_no_report_and_a_refused_one_no_line() {
+fn a_stopped_run_has_no_report_and_a_failed_one_its_error() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["--stop-after", "0.001 s"]);
     let end: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(end["exit_code"], i64::from(output.status.code().unwrap()));
-    assert_eq!(end["report"], Value::Null);
-    let output = run(folder.path(), &["--set", "gas.nonsense=1"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(output.stdout.is_empty());
+    assert_eq!(
+        (&end["report"], &end["error"]),
+        (&Value::Null, &Value::Null)
+    );
+    let diverging = "gas.patch.bottom.inlet.superficial_velocity=\"1e7 m/s\"";
+    for (code, wrong) in [(2, "gas.nonsense=1"), (3, diverging)] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = run(folder.path(), &["--set", wrong]);
+        assert_eq!(output.status.code(), Some(code));
+        let end: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(
+            (&end["exit_code"], &end["out"]),
+            (&code.into(), &"out".into())
+        );
+        assert_eq!(
+            (&end["report"], &end["summary"]),
+            (&Value::Null, &Value::Null)
+        );
+        let told = String::from_utf8(output.stderr).unwrap();
+        let error = end["error"].as_str().unwrap();
+        assert!(
+            !error.is_empty() && told.trim_end().ends_with(error),
+            "{told}"
+        );
+    }
 }

@@ -105,6 +105,11 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Ok(code) => code,
         Err(failure) => {
             eprintln!("{}", failure.message.trim_end());
+            if let Command::Run(arguments) = &arguments.command
+                && let Err(lost) = arguments.tell_failure(&failure)
+            {
+                eprintln!("{}", lost.message);
+            }
             failure.code
         }
     }

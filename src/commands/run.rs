@@ -63,7 +63,8 @@ pub(super) struct Arguments {
     /// range of a law or did not converge.
     #[arg(long)]
     strict: bool,
-    /// Prints one line of JSON at the end in place of text: `exit_code`, `out`, `report`, and what `summary.json` has. Shows no progress bar.
+    /// Prints one line of JSON at the end in place of text: `exit_code`, `out`, `report` of a complete run, `summary` with what
+    /// `summary.json` has, and `error` of a run that failed; what has none is null. Shows no progress bar.
     #[arg(long)]
     json: bool,
 }
@@ -73,6 +74,16 @@ impl Arguments {
     fn needs_mpi(&self) -> bool {
         let external = self.gas != GasBackend::Native || self.particles != ParticleBackend::Native;
         external && self.parallel.transport() == Transport::Mpi
+    }
+
+    /// Prints the line of `--json` of a run that failed.
+    pub(super) fn tell_failure(&self, failure: &Failure) -> Result<(), Failure> {
+        if !self.json {
+            return Ok(());
+        }
+        let resumed = self.resume.iter().flatten().find(|folder| folder.is_dir());
+        let out = self.out.as_deref().or(resumed.map(PathBuf::as_path));
+        say(told_as_json::failed(failure, out)?)
     }
 
     /// An option that is given and that only beds have.

@@ -14,11 +14,14 @@ use crate::results::files;
 #[derive(Debug, Serialize)]
 struct End<'a> {
     exit_code: u8,
-    out: &'a Path,
+    /// Of a run that failed, where its command line names it.
+    out: Option<&'a Path>,
     /// Of a complete run.
     report: Option<&'a Path>,
-    /// `summary.json`.
+    /// `summary.json`; none of a run that failed.
     summary: Value,
+    /// What standard error tells of a run that failed.
+    error: Option<&'a str>,
 }
 
 /// The line of a run in a results folder that ends with an exit code.
@@ -31,9 +34,23 @@ pub(super) fn line(code: u8, out: &Path, report: Option<&Path>) -> Result<String
     let text = fs::read_to_string(&path).map_err(|cause| unread(&cause))?;
     let end = End {
         exit_code: code,
-        out,
+        out: Some(out),
         report,
         summary: serde_json::from_str(&text).map_err(|cause| unread(&cause))?,
+        error: None,
     };
     serde_json::to_string(&end).map_err(|cause| unread(&cause))
+}
+
+/// The line of a run that failed.
+pub(super) fn failed(failure: &Failure, out: Option<&Path>) -> Result<String, Failure> {
+    let end = End {
+        exit_code: failure.code,
+        out,
+        report: None,
+        summary: Value::Null,
+        error: Some(failure.message.trim_end()),
+    };
+    serde_json::to_string(&end)
+        .map_err(|cause| Failure::new(failure.code, format!("the end of the run: {cause}")))
 }

@@ -9,6 +9,7 @@ use super::fault::{Fault, fault};
 use super::file::{self, MechanismFile, ParsedReaction, Thermo};
 use super::units::{self, MechanismUnits};
 use super::yaml::{self, YamlNode, YamlValue};
+use crate::fortran;
 
 /// Keys of every reaction that are read.
 const REACTION: &[&str] = &[
@@ -353,9 +354,9 @@ fn activation_energy(node: &YamlNode, units: &MechanismUnits) -> Result<f64, Fau
     let Some(unit) = units::activation_energy(unit.trim()) else {
         return fault(node.line, format!("Ea in {unit} is not read"));
     };
-    match number.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number * unit),
-        _ => fault(
+    match fortran::number(number) {
+        Some(number) => Ok(number * unit),
+        None => fault(
             node.line,
             format!("Ea is \"{text}\", which is not a number"),
         ),

@@ -124,6 +124,10 @@ fn draft(bare: &str, line: usize) -> Result<Draft, Fault> {
             format!("\"{bare}\" does not end in three numbers A, b, E"),
         );
     };
+    if number(words[split - 1]).is_some() {
+        let what = format!("\"{bare}\" has more than three numbers A, b, E behind its equation");
+        return fault(line, what);
+    }
     let name = words[..split].join(" ");
     let (equation, body) = equation::parse(&name).map_err(|what| (Some(line), what.to_string()))?;
     Ok(Draft {

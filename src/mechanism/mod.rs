@@ -106,8 +106,7 @@ fn placed(path: &Path, (line, what): Fault) -> MechanismError {
     }
 }
 
-/// What makes two reactions one: sides in any order, ways, and the third body.
-#[derive(PartialEq)]
+/// What makes two reactions one: sides in any order, and the third body.
 struct Identity<'a> {
     left: Vec<(&'a str, f64)>,
     right: Vec<(&'a str, f64)>,
@@ -129,6 +128,18 @@ impl<'a> Identity<'a> {
             body: statement.collider.as_ref().map(alone),
         }
     }
+
+    /// True of two equations of which one has a way of the other.
+    fn same_way(&self, other: &Self) -> bool {
+        let backwards = self.left == other.right && self.right == other.left;
+        (self.left == other.left && self.right == other.right)
+            || (backwards && (self.reversible || other.reversible))
+    }
+
+    /// The same for third bodies that act in both.
+    fn same(&self, other: &Self) -> bool {
+        self.body == other.body && self.same_way(other)
+    }
 }
 
 /// The one gas that a third body is; `None` where it is several.
@@ -140,14 +151,22 @@ fn alone(collider: &Collider) -> Option<&str> {
     }
 }
 
-/// Two reactions of one equation must both say so: else one is a slip.
+/// Two reactions of one equation must both say so, and one that says so must have another: else one is a slip.
 fn repeated(reactions: &[ParsedReaction]) -> Result<(), Fault> {
     let all: Vec<_> = reactions
         .iter()
         .map(|one| Identity::of(&one.statement))
         .collect();
     for (k, one) in reactions.iter().enumerate() {
-        let Some(other) = all[..k].iter().position(|other| *other == all[k]) else {
+        let Some(other) = all[..k].iter().position(|other| other.same(&all[k])) else {
+            let mut others = all.iter().enumerate().filter(|other| other.0 != k);
+            if one.duplicate && !others.any(|(_, other)| other.same_way(&all[k])) {
+                let what = format!(
+                    "{} says that it is a duplicate, but no other reaction has its equation",
+                    one.statement.name
+                );
+                return fault(one.line, what);
+            }
             continue;
         };
         let other = &reactions[other];

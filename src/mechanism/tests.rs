@@ -312,6 +312,22 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
             "REACTIONS\nA=>B 1 0 0\nA=>B 2 0 0\n",
             "a.inp:3: A=>B stands in line 2 too",
         ),
+        (
+            "REACTIONS\nA<=>B 1 0 0\nB<=>A 2 0 0\n",
+            "a.inp:3: B<=>A stands in line 2 too",
+        ),
+        (
+            "REACTIONS\nA=>B 1 0 0\nA=B 2 0 0\n",
+            "a.inp:3: A=B stands in line 2 too",
+        ),
+        (
+            "REACTIONS\nA=>B 1 0 0\nDUP\nA=>C 2 0 0\n",
+            "a.inp:2: A=>B says that it is a duplicate, but no other reaction",
+        ),
+        (
+            "REACTIONS\nA=>B 1 0 0 300\n",
+            "a.inp:2: \"A=>B 1 0 0 300\" has more than three numbers A, b, E",
+        ),
         ("THERMO\nX\nEND\n", "a.inp:2: a species has not four lines"),
         ("TRANSPORT\n", "a.inp:1: a section TRANSPORT is not read"),
     ] {
@@ -323,6 +339,8 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     for two in [
         "REACTIONS\nA=>B 1 0 0\nDUP\nA=>B 2 0 0\nDUPLICATE\n",
+        // The two ways of one equation.
+        "REACTIONS\nA=>B 1 0 0\nB=>A 2 0 0\n",
         // One falloff by all gases, one by argon alone.
         "REACTIONS\nA(+M)=>B(+M) 1 0 0\nLOW/1 0 0/\nA(+AR)=>B(+AR) 1 0 0\nLOW/2 0 0/\n",
     ] {

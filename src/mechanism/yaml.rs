@@ -3,6 +3,7 @@
 use saphyr_parser::{Event, Parser};
 
 use super::fault::{Fault, fault};
+use crate::fortran;
 
 /// Deepest nesting: mechanisms have four.
 const DEEPEST: usize = 32;
@@ -118,9 +119,9 @@ impl YamlNode {
     /// Its number.
     pub fn number(&self, what: &str) -> Result<f64, Fault> {
         let text = self.text(what)?;
-        match text.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => fault(
+        match fortran::number(text.trim()) {
+            Some(number) => Ok(number),
+            None => fault(
                 self.line,
                 format!("{what} is \"{text}\", which is not a number"),
             ),

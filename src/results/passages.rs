@@ -10,20 +10,34 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::model::{Case, Discharged, ForcePart, Measure, Passing};
 
-/// What had left through each outlet at past times, as far back as a measure looks.
+/// What had left through each outlet at past times, as far back as a measure looks: between two marks it grew evenly.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct OutflowTrail {
-    /// Process time in ps, and the totals of each population at each outlet from then on to the next entry. The first is the start of the run.
+    /// Process time in ps, and the totals of each population at each outlet by then; after the last mark nothing left. The first is
+    /// the start of the run.
     marks: Vec<(i64, Vec<[f64; 5]>)>,
 }
 
 impl OutflowTrail {
     /// Notes what has left by now; measures look back by so many ps at most.
     pub fn note(&mut self, moment: &CommittedState<'_>, reach: i64) {
-        let now = moment.clocks.process.count();
-        let totals: Vec<_> = moment.outlets.iter().map(OutletTotals::numbers).collect();
-        if self.marks.last().is_none_or(|last| last.1 != totals) {
-            self.marks.push((now, totals));
+        let began = moment.window.map(|window| window.start.process.count());
+        let totals = moment.outlets.iter().map(OutletTotals::numbers).collect();
+        self.mark(began, moment.clocks.process.count(), totals, reach);
+    }
+
+    /// Notes the totals at a time, which were those of the last mark until the window began.
+    fn mark(&mut self, began: Option<i64>, now: i64, totals: Vec<[f64; 5]>, reach: i64) {
+        match self.marks.last().cloned() {
+            Some((_, before)) if before == totals => {}
+            Some((time, before)) => {
+                // What left in this window left evenly over it, and nothing between the last mark and its start.
+                if let Some(began) = began.filter(|&began| began > time) {
+                    self.marks.push((began, before));
+                }
+                self.marks.push((now, totals));
+            }
+            None => self.marks.push((now, totals)),
         }
         // The start stays, and of what is too far back the last.
         let far = self.marks.partition_point(|mark| mark.0 <= now - reach);
@@ -31,6 +45,7 @@ impl OutflowTrail {
     }
 
     /// What of a population, or all, left through an outlet, or all, over a time up to now or since the start; and the span in s.
+    /// Of a window in which this time begins it takes the part after that.
     fn since(
         &self,
         moment: &CommittedState<'_>,
@@ -40,11 +55,6 @@ impl OutflowTrail {
         let now = moment.clocks.process.count();
         let begin = self.marks.first().map_or(0, |mark| mark.0);
         let from = over.map_or(begin, |over| (now - over.count()).max(begin));
-        let next = self.marks.partition_point(|mark| mark.0 <= from);
-        let before = next
-            .checked_sub(1)
-            .and_then(|place| self.marks.get(place))
-            .map_or(&[][..], |mark| &mark.1);
         let mut sum = [0.0; 5];
         for (place, totals) in moment.outlets.iter().enumerate() {
             let others = outlet.is_some_and(|only| only != totals.outlet)
@@ -52,7 +62,7 @@ impl OutflowTrail {
             if others {
                 continue;
             }
-            let before = before.get(place).copied().unwrap_or_default();
+            let before = self.totals_at(from, place);
             for ((sum, total), before) in sum.iter_mut().zip(totals.numbers()).zip(before) {
                 *sum += total - before;
             }
@@ -61,6 +71,23 @@ impl OutflowTrail {
             OutletTotals::default().with_numbers(sum),
             Ticks::new(now - from).seconds(),
         )
+    }
+
+    /// What of one population had left through one outlet by a time in ps that lies within the marks.
+    fn totals_at(&self, time: i64, place: usize) -> [f64; 5] {
+        let numbers = |mark: &(i64, Vec<[f64; 5]>)| mark.1.get(place).copied().unwrap_or_default();
+        let next = self.marks.partition_point(|mark| mark.0 <= time);
+        let Some(before) = next.checked_sub(1).and_then(|last| self.marks.get(last)) else {
+            return [0.0; 5];
+        };
+        let mut totals = numbers(before);
+        if let Some(after) = self.marks.get(next).filter(|_| before.0 < time) {
+            let share = (time - before.0) as f64 / (after.0 - before.0) as f64;
+            for (total, later) in totals.iter_mut().zip(numbers(after)) {
+                *total += share * (later - *total);
+            }
+        }
+        totals
     }
 }
 
@@ -168,4 +195,40 @@ fn pressure_force(moment: &CommittedState<'_>, patch: &str, along: &Vec3, refere
         (pressure - reference) * mesh.face_area()[face].dot(along)
     };
     patch.faces().map(on_face).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Windows of 14 ps: one in which nothing leaves, and three that 7, 14 and 28 leave in.
+    fn trail(reach: i64) -> OutflowTrail {
+        let mut trail = OutflowTrail::default();
+        trail.mark(None, 0, Vec::new(), reach);
+        trail.mark(Some(0), 14, Vec::new(), reach);
+        for (end, all) in [(28, 7.0), (42, 21.0), (56, 49.0)] {
+            trail.mark(Some(end - 14), end, vec![[all; 5]], reach);
+        }
+        trail
+    }
+
+    #[test]
+    fn of_a_window_in_which_the_time_begins_counts_the_part_after_it() {
+        let trail = trail(100);
+        let by = |time| trail.totals_at(time, 0)[0];
+        assert_eq!([by(0), by(7), by(14)], [0.0; 3]);
+        assert_eq!([by(16), by(28), by(35)], [1.0, 7.0, 14.0]);
+        assert_eq!([by(42), by(43), by(56), by(60)], [21.0, 23.0, 49.0, 49.0]);
+        assert_eq!(trail.totals_at(43, 1), [0.0; 5]);
+    }
+
+    #[test]
+    fn of_what_is_too_far_back_stays_what_the_oldest_time_needs() {
+        let short = trail(10);
+        assert_eq!(short.marks.len(), 3);
+        let all = trail(100);
+        for time in 46..=56 {
+            assert_eq!(short.totals_at(time, 0), all.totals_at(time, 0));
+        }
+    }
 }

@@ -232,6 +232,9 @@ fn first_amounts(case: &Case, moment: &CommittedState<'_>, solid: Option<usize>)
     amounts.map(|mass| mass.unwrap_or(0.0)).collect()
 }
 
+/// Share of a solid by which rounding alone may tell it from what it came with.
+const UNREACTED: f64 = 8.0 * f64::EPSILON;
+
 /// How much each particle counts beside its weight: for conversions what it came with of the solid, else all alike.
 fn shares(case: &Case, moment: &CommittedState<'_>, (field, solid): Field<'_>) -> Vec<f64> {
     match field {
@@ -243,7 +246,10 @@ fn shares(case: &Case, moment: &CommittedState<'_>, (field, solid): Field<'_>) -
 /// A field of all particles; speeds are those of process time.
 fn of_particles(case: &Case, moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<f64> {
     let bed = moment.particles;
-    let acceleration = moment.window.map_or(1.0, |window| window.acceleration());
+    let acceleration = match moment.window {
+        Some(window) => window.acceleration(),
+        None => case.time.acceleration.at(moment.clocks.process).0,
+    };
     let speeds = |rates: &[Vec3]| {
         rates
             .iter()
@@ -284,7 +290,12 @@ fn of_particles(case: &Case, moment: &CommittedState<'_>, (field, column): Field
                 let left = left.get(row).copied().unwrap_or(f64::NAN);
                 1.0 - left * moment.particle_mass[row] / first
             })
-            .map(|share| if share.is_finite() { share } else { f64::NAN })
+            .map(|share| match share.is_finite() {
+                // The round-off of what has not reacted.
+                true if share.abs() < UNREACTED => 0.0,
+                true => share,
+                false => f64::NAN,
+            })
             .collect()
         }
         _ => moment.particle_temperature.to_vec(),

@@ -12,11 +12,22 @@ pub(super) fn sheet(text: &str, timestep: Option<u64>) -> Result<Sheet, Fault> {
     let mut found: Option<Sheet> = None;
     let (mut step, mut count) = (0u64, None);
     let mut steps = Vec::new();
+    // The number of atoms, where all that were announced were read and no other item began.
+    let mut complete: Option<u64> = None;
     while let Some((line, content)) = lines.next() {
         let Some(item) = content.trim().strip_prefix("ITEM:") else {
             // The lines of items that do not matter here, such as BOX BOUNDS.
-            continue;
+            match complete.filter(|_| !content.trim().is_empty()) {
+                Some(count) => {
+                    let what = format!(
+                        "{count} atoms are announced by \"ITEM: NUMBER OF ATOMS\", but there are more"
+                    );
+                    return Err((Some(Row::Line(line)), what));
+                }
+                None => continue,
+            }
         };
+        complete = None;
         let item = item.trim();
         if item == "TIMESTEP" {
             step = whole(&mut lines, line)?;
@@ -29,6 +40,7 @@ pub(super) fn sheet(text: &str, timestep: Option<u64>) -> Result<Sheet, Fault> {
                 return Err((Some(Row::Line(line)), what));
             };
             let snapshot = atoms(&mut lines, names, count, line)?;
+            complete = Some(count);
             if timestep.is_none_or(|wanted| wanted == step) {
                 found = Some(snapshot);
             }

@@ -110,7 +110,12 @@ fn described<'t>(lines: &mut impl Iterator<Item = Line<'t>>) -> Result<Sheet, Fa
     }
     let mut sheet = empty(&names);
     let data = lines.skip(HEADING).filter(|line| !line.1.is_empty());
-    for (line, content) in data.take(count) {
+    for (line, content) in data {
+        if sheet.lines.len() == count {
+            let what =
+                format!("{count} particles are announced in line {count_line}, but there are more");
+            return at(line, what);
+        }
         let values = numbers(line, content)?;
         if values.len() < names.len() || values.len() > names.len() && !more {
             let what = format!(
@@ -265,6 +270,10 @@ mod tests {
             (
                 version_2(OPTIONS_OF_FILE, "1 2 3 0.004\n"),
                 "line 20: 2 particles are announced, but the file ends after 1",
+            ),
+            (
+                version_2(OPTIONS_OF_FILE, &"1 2 3 0.004\n".repeat(3)),
+                "line 37: 2 particles are announced in line 20, but there are more",
             ),
             (
                 version_2(&OPTIONS_OF_FILE.replace("F  2500.0", "F"), ""),

@@ -4,6 +4,8 @@ use std::fmt;
 
 use calcine_coupler::physics::Vec3;
 
+use crate::fortran;
+
 /// Which particles of a file are meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::case) struct Choice {
@@ -446,7 +448,9 @@ pub(super) fn is_read(name: &str) -> bool {
 /// A number of a text file.
 pub(super) fn number(word: &str, line: usize) -> Result<f64, Fault> {
     word.parse()
-        .map_err(|_| (Some(Row::Line(line)), format!("\"{word}\" is not a number")))
+        .ok()
+        .or_else(|| fortran::number(word))
+        .ok_or_else(|| (Some(Row::Line(line)), format!("\"{word}\" is not a number")))
 }
 
 /// Adds an array to a sheet: a single column, or one for each component.

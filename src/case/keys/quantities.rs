@@ -30,7 +30,7 @@ const MEASURE: &[Key] = &[
     key("along", Vector(D::NONE), Without("none"), "Direction; required with `force`.", "\"0 0 1\""),
     key("discharge", Choice(words::<Discharged>), OneOf, "Particles that left through outlets: `mass_flow` in kg/s, `mass` in kg, `count`, or the `residence_time` in s since feeds brought them, a mean over their mass, and its standard deviation `residence_deviation`. With `population` of what is tagged by it.", "\"mass_flow\""),
     key("outlet", Text, Without("all"), "The outlet, with `discharge`.", "\"exit\""),
-    key("over", Number(D::TIME, Positive), Without("since the start"), "Process time up to now that counts, with `discharge`.", "\"10 s\""),
+    key("over", Number(D::TIME, Positive), Without("since the start"), "Process time up to now that counts, with `discharge`; of the window in which it begins, the part after that.", "\"10 s\""),
     key("body", Text, OneOf, "Temperature of one of `bodies`.", "\"crucible\""),
     key("surface_angle", Table(MEASURE_SURFACE_ANGLE), OneOf, "Slope of the bed in a drum, in rad: the angle by which the centre of mass of all particles has turned about an axis from straight below it; a flat surface stands across the line between them.", "{ point = \"0 0 0 mm\", axis = \"0 1 0\" }"),
 ];

@@ -139,12 +139,30 @@ fn of_file(section: &TableReader<'_>, data: &Data<'_>, name: &str) -> Option<Spe
         well_depth.or(file.map(|one| one.well_depth)),
     );
     let (Some(diameter), Some(well_depth)) = potential else {
-        let rule =
-            format!("brings {name} without the diameter and the well depth of its molecules");
-        let help = format!(
+        let state = format!(
             "state them, for example transport = {{ {name} = {{ diameter = \"4.3e-10 m\", well_depth = \"250 K\" }} }}"
         );
-        data.table.fail("thermo", rule, help);
+        let mut others = data.molecules.iter().map(|one| one.name.as_str());
+        let alike = others.find(|other| other.eq_ignore_ascii_case(name));
+        match data.molecules.is_empty() {
+            true => {
+                let rule = format!(
+                    "brings {name} without the diameter and the well depth of its molecules"
+                );
+                data.table.fail("thermo", rule, state);
+            }
+            false => {
+                let rule =
+                    format!("has no line of {name}, nor has the file of `thermo` its molecules");
+                let help = match alike {
+                    Some(other) => format!(
+                        "it has {other}: names agree in upper and lower case too; rename it in a copy of the file"
+                    ),
+                    None => state,
+                };
+                data.table.fail("transport_file", rule, help);
+            }
+        }
         return None;
     };
     let volume = stated.and_then(|one| one.diffusion_volume);

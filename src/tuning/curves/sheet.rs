@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::CurveFileError;
+use crate::fortran;
 
 /// How numbers are written and parted, where a case states it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,7 +131,7 @@ fn number(field: &str, decimal_comma: bool) -> Option<f64> {
     if !plain.starts_with(starts) {
         return None;
     }
-    plain.parse::<f64>().ok().filter(|value| value.is_finite())
+    fortran::number(&plain)
 }
 
 /// One way to read the lines.
