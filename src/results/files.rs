@@ -35,9 +35,9 @@ pub(crate) const GAS: &str = "gas.pvd";
 /// Collection of the snapshots of the particles.
 pub(crate) const PARTICLES: &str = "particles.pvd";
 /// Name of the script that opens a run in ParaView.
-pub(crate) const PARAVIEW: &str = "paraview.py";
+pub(crate) const PARAVIEW: &str = "open_in_paraview.py";
 /// The script, the same for all runs.
-pub(super) const PARAVIEW_SCRIPT: &str = include_str!("paraview.py");
+pub(super) const PARAVIEW_SCRIPT: &str = include_str!("open_in_paraview.py");
 /// Name of the file of means over time.
 pub(crate) const MEANS: &str = "means.vtu";
 /// Folders of the snapshots of the gas, of the particles and of the probes.

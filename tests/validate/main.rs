@@ -32,6 +32,7 @@ mod hopper_bed;
 mod kept;
 mod load;
 mod moving_bed;
+mod paraview;
 mod parcel_beds;
 #[path = "../support/program.rs"]
 mod program;
@@ -91,6 +92,7 @@ const ALL: &[(&str, fn())] = &[
     ("load", load::run),
     ("moving-bed", moving_bed::run),
     ("moving-resolved-bed", moving_bed::run_resolved),
+    ("paraview", paraview::run),
     ("parcel-beds", parcel_beds::run),
     ("repose", repose::run),
     ("report-pages", report_pages::run),

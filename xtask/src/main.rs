@@ -67,8 +67,8 @@ usage: cargo xtask TASK
         [--from K]        that nothing is left (default: 500 trials)
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, drum-restarts, elastic-box, external-restarts, flame,
-                          fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, parcel-beds,
-                          repose, report-pages, restarts, shaft-choices, shaft-flames,
+                          fluidised-bed, heated-cavity, hopper, load, moving-bed, moving-resolved-bed, paraview,
+                          parcel-beds, repose, report-pages, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-cavity-1000, skewed-meshes, slurm,
                           spouted-bed, square-cylinder, tg-furnace, voids";
 

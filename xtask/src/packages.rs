@@ -22,6 +22,9 @@ pub struct Needs {
     pub python: bool,
 }
 
+/// Packages with others that have the same: ParaView's Python has VTK, and conflicts with the package of VTK's.
+const STAND_INS: &[(&str, &str)] = &[("python3-vtk9", "python3-paraview")];
+
 impl Needs {
     /// A native run only.
     pub const NATIVE: Self = Self {
@@ -89,7 +92,7 @@ pub fn install(needs: Needs, logs: &Path) -> TaskResult<()> {
     let missing: Vec<&str> = wanted
         .iter()
         .copied()
-        .filter(|name| !is_installed(name))
+        .filter(|name| !is_installed(name) && !stands_in(name))
         .collect();
     if missing.is_empty() {
         say(&format!("Debian's packages are here: {}", wanted.join(" ")));
@@ -116,7 +119,7 @@ fn update() -> Command {
 fn installation(missing: &[&str]) -> Command {
     let mut command = apt_get();
     command
-        .args(["install", "-y", "--no-install-recommends"])
+        .args(["install", "-y", "--no-install-recommends", "--no-remove"])
         .args(missing);
     command
 }
@@ -186,6 +189,12 @@ pub fn is_installed(package: &str) -> bool {
     query(package, "${db:Status-Status}").is_some_and(|status| status == "installed")
 }
 
+/// True where another installed package has what this one has, and both cannot be installed.
+fn stands_in(package: &str) -> bool {
+    let mut pairs = STAND_INS.iter().filter(|(name, _)| *name == package);
+    pairs.any(|(_, other)| is_installed(other))
+}
+
 /// Version of the source package that an installed package was built from.
 pub fn source_version(package: &str) -> Option<String> {
     is_installed(package)
@@ -247,7 +256,7 @@ mod tests {
         assert_eq!(
             shown(&installation(&["libhdf5-dev", "g++"])),
             "env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=120 install -y \
-             --no-install-recommends libhdf5-dev g++"
+             --no-install-recommends --no-remove libhdf5-dev g++"
         );
     }
 
