@@ -23,7 +23,9 @@ pub enum NotFound {
         variable: String,
     },
     /// It is in none of the places.
-    #[error("the program was found neither in {folder} nor in the variable {variable}; {REMEDY}")]
+    #[error(
+        "the program was found neither in {folder}, nor beside the command `calcine` of PATH, nor in the variable {variable}; {REMEDY}"
+    )]
     Nowhere {
         /// The folder of the running executable.
         folder: PathBuf,
@@ -32,8 +34,25 @@ pub enum NotFound {
     },
 }
 
-/// Looks for a program of Calcine: the variable's path, or beside the running executable (also one folder
-/// up, for tests; in `openfoam/bin` of the target folder; in `libexec/calcine` of an installation).
+/// Where programs of Calcine are, from the folder of the running one: beside it, one folder up, for tests, in `libexec/calcine` of an
+/// installation, and in `openfoam/bin` of the target folder.
+const PLACES: [&str; 5] = [
+    ".",
+    "..",
+    "../libexec/calcine",
+    "../openfoam/bin",
+    "../../openfoam/bin",
+];
+
+/// The folder of the command `calcine` of PATH, for programs that are not Calcine's, such as Python.
+fn folder_of_command() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let mut commands = std::env::split_paths(&path).map(|folder| folder.join("calcine"));
+    let command = commands.find(|command| command.is_file())?;
+    Some(command.canonicalize().ok()?.parent()?.to_owned())
+}
+
+/// Looks for a program of Calcine: the variable's path, or in the places about the running executable, or about the command `calcine`.
 pub fn look_for(variable: &str, name: &str) -> Result<PathBuf, NotFound> {
     let variable_value = std::env::var_os(variable).map(PathBuf::from);
     let variable = variable.to_owned();
@@ -47,17 +66,11 @@ pub fn look_for(variable: &str, name: &str) -> Result<PathBuf, NotFound> {
         .and_then(|path| path.canonicalize())
         .unwrap_or_default();
     let folder = own.parent().unwrap_or(Path::new("."));
-    let places = [
-        ".",
-        "..",
-        "../libexec/calcine",
-        "../openfoam/bin",
-        "../../openfoam/bin",
-    ];
-    let found = places
-        .map(|place| folder.join(place).join(name))
-        .into_iter()
-        .find(|path| path.is_file());
+    let about = |folder: &Path| {
+        let mut programs = PLACES.iter().map(|place| folder.join(place).join(name));
+        programs.find(|path| path.is_file())
+    };
+    let found = about(folder).or_else(|| about(&folder_of_command()?));
     found.ok_or_else(|| NotFound::Nowhere {
         folder: folder.to_owned(),
         variable,

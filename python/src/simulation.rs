@@ -1,5 +1,6 @@
 //! The class `Simulation`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -41,7 +42,7 @@ fn backends(builder: SimulationBuilder, gas: &str, particles: &str) -> PyResult<
         "liggghts" => ParticleBackend::Liggghts,
         "openfoam" => ParticleBackend::Openfoam,
         "external" => ParticleBackend::External,
-        _ => return unknown("particles", particles, "native, liggghts, external"),
+        _ => return unknown("particles", particles, "native, liggghts, openfoam, external"),
     };
     Ok(builder.gas(gas).particles(particles))
 }
@@ -301,6 +302,24 @@ impl PySimulation {
     /// Sets the mass flow of a discharge in kg/s at most; `math.inf` takes all that is in its zone.
     fn set_outlet_rate(&self, py: Python<'_>, outlet: &str, rate: f64) -> PyResult<()> {
         self.with(py, |simulation| simulation.set_outlet_rate(outlet, rate))
+    }
+
+    /// Values of the case's quantities by their names, as a row of `series.csv` has them; NaN where nothing is known yet.
+    #[getter]
+    fn quantities(&self, py: Python<'_>) -> PyResult<BTreeMap<String, f64>> {
+        self.read(py, |simulation| {
+            let values = simulation.quantities().into_iter();
+            values.map(|(name, value)| (name.to_owned(), value)).collect()
+        })
+    }
+
+    /// Names of the populations, in the order of `particles.population`.
+    #[getter]
+    fn populations(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        self.read(py, |simulation| {
+            let populations = simulation.case().particles.iter();
+            populations.map(|one| one.name.clone()).collect()
+        })
     }
 
     /// Process time in s.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use calcine::simulation::Simulation;
 use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays;
 use crate::held::HeldSimulation;
@@ -115,6 +116,50 @@ impl PyParticles {
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> Vectors<'py> {
         vectors(py, &self.0, |simulation| simulation.particles().velocity)
+    }
+
+    /// Angular velocities in rad/s of motion time; without rows where the solver has none.
+    #[getter]
+    fn angular_velocity<'py>(&self, py: Python<'py>) -> Vectors<'py> {
+        vectors(py, &self.0, |simulation| {
+            simulation.particles().angular_velocity
+        })
+    }
+
+    /// Statistical weights: how many real particles each stands for.
+    #[getter]
+    fn weight<'py>(&self, py: Python<'py>) -> Scalars<'py, f64> {
+        let weights = self.0.with(py, |simulation| {
+            let particles = simulation.particles();
+            let rows = 0..particles.len();
+            Ok(rows.map(|row| particles.weight_of(row)).collect::<Vec<_>>())
+        })?;
+        arrays::scalars(py, &weights)
+    }
+
+    /// What is inside the particles, by the names that snapshots with `output.particles = ["inside"]` have: such as the mass
+    /// fraction of each solid. One value a particle, NaN of those that have none; of what has several values a particle, such as
+    /// those of shells, one column each, NaN beyond the last.
+    #[getter]
+    fn inside<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let columns = self
+            .0
+            .with(py, |simulation| Ok(simulation.state().models.shown("")))?;
+        let found = PyDict::new(py);
+        for one in &columns {
+            let name = &one.column.name;
+            match one.scalars() {
+                Some(values) => found.set_item(name, arrays::scalars(py, &values)?)?,
+                None => {
+                    let most = one.values.lengths().max().unwrap_or(0);
+                    let places: Vec<_> = (0..most).map(|place| one.nth(place)).collect();
+                    let rows = 0..one.values.rows();
+                    let table = rows.flat_map(|row| places.iter().map(move |of| of[row]));
+                    found.set_item(name, arrays::rows(py, table.collect(), most)?)?;
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// Radii in m.

@@ -256,6 +256,15 @@ impl Recorder {
         }
     }
 
+    /// Names and values of the quantities of the case at a moment of this run.
+    pub fn quantities(&self, moment: &CommittedState<'_>) -> Vec<(&str, f64)> {
+        let quantities = self.case.quantities.iter();
+        let value = |quantity| quantities::evaluate(quantity, moment, self.so_far());
+        quantities
+            .map(|quantity| (quantity.name.as_str(), value(quantity)))
+            .collect()
+    }
+
     /// Keeps the values of quantities whose time has come, or with `latest` of all.
     fn capture(&mut self, moment: &CommittedState<'_>, latest: bool) {
         let mut captured = std::mem::take(&mut self.counters.captured);

@@ -212,6 +212,12 @@ impl Simulation {
         self.state().mesh
     }
 
+    /// Names and values of the case's quantities after the last committed window, as a row of `series.csv` has them; NaN where nothing
+    /// is known yet.
+    pub fn quantities(&self) -> Vec<(&str, f64)> {
+        self.recorder.quantities(&self.state())
+    }
+
     /// What is conserved, summed over all windows.
     pub fn ledger(&self) -> &Ledger {
         self.run.ledger()
