@@ -15,6 +15,7 @@ mod progress;
 pub mod report;
 pub mod results;
 pub mod simulation;
+mod standard_error;
 pub mod tuning;
 pub mod valid;
 mod vtk_xml;

@@ -627,3 +627,25 @@ fn an_adhesive_law_is_refused_in_the_pairing_whose_particles_have_none() {
     assert!(text.contains("no cohesion law \"jkr\""), "{text}");
     assert!(text.contains("use native particles"), "{text}");
 }
+
+/// `calcine … 2>&1 | head -1` closes standard error while the command still writes.
+#[test]
+fn a_closed_standard_error_changes_no_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let closed = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+        command.args(words).current_dir(folder.path());
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        drop(child.stderr.take());
+        child.wait().unwrap().code()
+    };
+    let file = column();
+    let case = file.to_str().unwrap();
+    assert_eq!(closed(&["run", case, "--set", "gas.nonsense=1"]), Some(2));
+    let short = ["run", case, "--out", "out", "--set", "time.end=\"1 s\""];
+    assert_eq!(closed(&short), Some(0));
+    let curves = shipped("tg-laws");
+    let tune = ["tune", curves.to_str().unwrap(), "--out", "tuned"];
+    assert_eq!(closed(&tune), Some(0));
+}

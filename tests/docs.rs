@@ -323,8 +323,12 @@ fn shortened(words: &[String]) -> Vec<String> {
     if !matches!(words[0].as_str(), "run" | "sweep") {
         return words;
     }
-    if words[1].starts_with("cases/") {
+    if let Some(case) = words[1].strip_prefix("cases/").map(str::to_owned) {
         words[1] = "bed.toml".into();
+        if words[0] == "sweep" {
+            // The folder that the case would have had.
+            words.extend(["--out".into(), format!("results/{case}-sweep")]);
+        }
     }
     let set: &[&str] = if words[0] == "run" {
         SHORT

@@ -29,12 +29,12 @@ fn the_report_is_one_page_that_loads_nothing() {
     // Five views of two columns of twelve cells and ten particles each.
     assert_eq!(page.matches("<polygon").count(), 5 * 24);
     assert_eq!(page.matches("class=\"sphere\"").count(), 5 * 10);
-    // The curves: ten particles, three quantities, two residuals, two iterations, two errors of steps; four fields of the
+    // The curves: ten particles, three quantities, two residuals, two iterations, the window; four fields of the
     // gas and two of the particles along the probe at five times.
     let curves = |text: &str| text.matches("class=\"curve\"").count();
     let (before, rest) = page.split_once("<h2>Profiles</h2>").unwrap();
     let (profiles, after) = rest.split_once("<h2>Ledger</h2>").unwrap();
-    assert_eq!(curves(before) + curves(after), 19 + 6 * 5);
+    assert_eq!(curves(before) + curves(after), 18 + 6 * 5);
     // Profiles at three times; the histogram of temperatures at two.
     assert!(
         profiles.contains("Gas: temperature in K")

@@ -295,3 +295,25 @@ fn a_key_that_stands_there_twice_and_a_table_or_page_of_the_users_own_are_refuse
     assert!(said(&foreign).contains("is no page of a sweep"));
     assert_eq!(fs::read_to_string(&own).unwrap(), "<p>mine</p>");
 }
+
+#[test]
+fn a_folder_with_runs_of_other_values_is_refused_and_more_values_keep_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |values: &str| sweep(folder.path(), values).output().unwrap();
+    assert!(run("5000,6000").status.success());
+    let (table, before) = (fs::read(out.join("sweep.csv")).unwrap(), complete(&out));
+    let refused = run("7000");
+    assert_eq!(refused.status.code(), Some(2));
+    let text = said(&refused);
+    assert!(
+        text.contains("acceleration=5000,end=100s,every=50s has a run that is not of this sweep")
+            && text.contains("(2 in all)"),
+        "{text}"
+    );
+    assert_eq!(fs::read(out.join("sweep.csv")).unwrap(), table);
+    assert!(run("5000,6000,7000").status.success());
+    let after = complete(&out);
+    assert_eq!(after.len(), 3);
+    assert!(before.iter().all(|(run, made)| after[run] == *made));
+}

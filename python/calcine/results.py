@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._calcine import CaseError
+from ._calcine import CaseError, report
 
 if TYPE_CHECKING:
     import h5py
@@ -42,6 +42,10 @@ class Results:
     def summary(self) -> dict[str, Any]:
         """``summary.json``: what was run and what came out."""
         return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+
+    def report(self) -> Path:
+        """Writes the page ``report.html`` of the run, as ``calcine report`` does, and gives its path."""
+        return report(self.folder)
 
     def quantity(self, name: str) -> float:
         """The value of a quantity of the case at the end, in the unit of ``summary['quantities']``."""
@@ -142,22 +146,25 @@ class Results:
         for name in names:
             axes.plot(table.index, table[name], label=name)
         units = dict.fromkeys(table.attrs["units"][name] for name in names)
+        what = f"{names[0]} " if len(names) == 1 else ""
         axes.set_xlabel("process time [s]")
-        axes.set_ylabel(", ".join(f"[{unit}]" for unit in units))
+        axes.set_ylabel(what + ", ".join(f"[{unit}]" for unit in units))
         axes.legend()
         return axes
 
     def plot_profile(
         self, name: str, *, along: str = "z", snapshot: int = -1, axes: Axes | None = None
     ) -> Axes:
-        """Draws a scalar gas field of a snapshot over a coordinate of the cells (``x``, ``y`` or ``z``) with matplotlib."""
+        """Draws the mean of a scalar gas field of a snapshot over a coordinate (``x``, ``y`` or ``z``) with matplotlib.
+
+        Means are by volume over the cells of one coordinate, or over 50 layers where cells do not stand in layers.
+        """
         import matplotlib.pyplot as plt
 
         field = self.fields()[name].isel(process_time=snapshot)
         axes = axes or plt.subplots(layout="constrained")[1]
-        place = field[along].values
-        order = np.argsort(place, kind="stable")
-        axes.plot(place[order], field.values[order], ".-", label=f"{float(field.process_time):g} s")
+        place, mean = _layers(field[along].values, field.values, field["cell_volume"].values)
+        axes.plot(place, mean, ".-", label=f"{float(field.process_time):g} s")
         axes.set_xlabel(f"{along} [m]")
         axes.set_ylabel(f"{name} [{field.attrs['units']}]")
         axes.legend()
@@ -204,3 +211,17 @@ def _described(field: h5py.Dataset) -> dict[str, str]:
 
 def _is_vector(name: str, values: np.ndarray) -> bool:
     return values.shape[1] == 3 and name in {"position", "velocity", "force"}
+
+
+def _layers(
+    place: np.ndarray, values: np.ndarray, volume: np.ndarray, most: int = 50
+) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates of layers of cells, and the means of values by volume over them."""
+    span = np.ptp(place)
+    # Cells of one layer, but for round-off.
+    layer = np.round((place - place.min()) / (span or 1.0), 9)
+    if len(np.unique(layer)) > max(most, len(place) // 2):
+        layer = np.minimum((layer * most).astype(int), most - 1)
+    _, layer = np.unique(layer, return_inverse=True)
+    total = np.bincount(layer, volume)
+    return np.bincount(layer, volume * place) / total, np.bincount(layer, volume * values) / total

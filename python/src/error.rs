@@ -10,13 +10,13 @@ create_exception!(
     calcine,
     CalcineError,
     PyException,
-    "A value that is set is refused, or a failure without a class of its own (exit code 1); base of all others. `exit_code` is that of the command line."
+    "A failure without a class of its own (exit code 1); base of all others. `exit_code` is that of the command line."
 );
 create_exception!(
     calcine,
     CaseError,
     CalcineError,
-    "The case or a results folder is refused (exit code 2)."
+    "The case, a results folder or a value that is set is refused (exit code 2)."
 );
 create_exception!(
     calcine,

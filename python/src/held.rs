@@ -1,20 +1,46 @@
 //! A simulation that Python holds: used by one thread at a time, and gone once it is closed.
 
-use std::sync::{Mutex, MutexGuard};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use calcine::simulation::{Simulation, SimulationError};
+use calcine::simulation::{Ending, Simulation, SimulationError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error::exception;
 
-/// A simulation until it is closed.
-pub struct HeldSimulation(Mutex<Option<Simulation>>);
+/// A simulation until it is closed, and what is known of it after that.
+pub struct HeldSimulation {
+    simulation: Mutex<Option<Simulation>>,
+    folder: PathBuf,
+    ending: Mutex<Option<Ending>>,
+}
 
 impl HeldSimulation {
     /// Holds a simulation.
     pub fn new(simulation: Simulation) -> Self {
-        Self(Mutex::new(Some(simulation)))
+        Self {
+            folder: simulation.folder().to_owned(),
+            simulation: Mutex::new(Some(simulation)),
+            ending: Mutex::default(),
+        }
+    }
+
+    /// The results folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// How the run ended, if it has.
+    pub fn ending(&self, py: Python<'_>) -> Option<Ending> {
+        py.detach(|| match self.guard().as_ref() {
+            Some(simulation) => simulation.ending().cloned(),
+            None => self.kept_ending().clone(),
+        })
+    }
+
+    fn kept_ending(&self) -> MutexGuard<'_, Option<Ending>> {
+        self.ending.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Reads the simulation; waits where another thread is in the middle of a window.
@@ -37,7 +63,7 @@ impl HeldSimulation {
 
     /// After a panic it is gone: nobody knows in what state it is.
     fn guard(&self) -> MutexGuard<'_, Option<Simulation>> {
-        self.0.lock().unwrap_or_else(|poisoned| {
+        self.simulation.lock().unwrap_or_else(|poisoned| {
             let mut guard = poisoned.into_inner();
             *guard = None;
             guard
@@ -51,6 +77,11 @@ impl HeldSimulation {
 
     /// Lets go of it.
     pub fn close(&self, py: Python<'_>) {
-        py.detach(|| drop(self.guard().take()));
+        py.detach(|| {
+            let Some(simulation) = self.guard().take() else {
+                return;
+            };
+            *self.kept_ending() = simulation.ending().cloned();
+        });
     }
 }

@@ -15,7 +15,7 @@ mod _calcine {
     #[pymodule_export]
     use super::error::{CalcineError, CaseError, DivergedError, RunInterruptedError, SolverError};
     #[pymodule_export]
-    use super::simulation::{PySimulation, check, start};
+    use super::simulation::{PySimulation, check, report, start};
     #[pymodule_export]
     use super::views::{PyGas, PyMesh, PyParticles};
 }

@@ -42,7 +42,13 @@ fn backends(builder: SimulationBuilder, gas: &str, particles: &str) -> PyResult<
         "liggghts" => ParticleBackend::Liggghts,
         "openfoam" => ParticleBackend::Openfoam,
         "external" => ParticleBackend::External,
-        _ => return unknown("particles", particles, "native, liggghts, openfoam, external"),
+        _ => {
+            return unknown(
+                "particles",
+                particles,
+                "native, liggghts, openfoam, external",
+            );
+        }
     };
     Ok(builder.gas(gas).particles(particles))
 }
@@ -64,6 +70,13 @@ pub fn check(
     let builder = backends(opened(case, changes), gas, particles)?;
     let report = py.detach(|| builder.check());
     report.map_err(|error| exception(py, &error))
+}
+
+/// Writes the page of a results folder, as `calcine report` does; gives its path.
+#[pyfunction]
+pub fn report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
+    let written = py.detach(|| calcine::report::write(&folder));
+    written.map_err(|error| exception(py, &SimulationError::from(error)))
 }
 
 /// Begins a run, or goes on with one.
@@ -309,7 +322,9 @@ impl PySimulation {
     fn quantities(&self, py: Python<'_>) -> PyResult<BTreeMap<String, f64>> {
         self.read(py, |simulation| {
             let values = simulation.quantities().into_iter();
-            values.map(|(name, value)| (name.to_owned(), value)).collect()
+            values
+                .map(|(name, value)| (name.to_owned(), value))
+                .collect()
         })
     }
 
@@ -348,14 +363,14 @@ impl PySimulation {
 
     /// The results folder.
     #[getter]
-    fn folder(&self, py: Python<'_>) -> PyResult<PathBuf> {
-        self.read(py, |simulation| simulation.folder().to_owned())
+    fn folder(&self) -> PathBuf {
+        self.0.folder().to_owned()
     }
 
-    /// `None`, "finished" or "checkpointed".
+    /// `None`, "finished" or "checkpointed"; after the end of a `with` block too.
     #[getter]
-    fn ending(&self, py: Python<'_>) -> PyResult<Option<&'static str>> {
-        self.read(py, |simulation| simulation.ending().map(word))
+    fn ending(&self, py: Python<'_>) -> Option<&'static str> {
+        self.0.ending(py).as_ref().map(word)
     }
 
     /// What is to be told of the start, such as a damaged checkpoint and the older one used in its place.

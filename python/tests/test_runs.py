@@ -6,44 +6,13 @@ import sys
 import textwrap
 import threading
 
-import h5py
 import numpy as np
 import pytest
 
 import calcine
 
-
-def by_command(command, case, out, *more):
-    changes = [word for change in case.changes for word in ("--set", change)]
-    line = [command, "run", case.path, "--out", out, "--quiet", *changes, *more]
-    return subprocess.run(line, capture_output=True, text=True, timeout=300)
-
-
-def datasets(path):
-    found = {}
-    with h5py.File(path, locking=False) as store:
-        store.visititems(
-            lambda name, one: found.update({name: one[()].tobytes()})
-            if isinstance(one, h5py.Dataset)
-            else None
-        )
-    return found
-
-
-def state(checkpoint):
-    """The files of a checkpoint, save the sums, which are of them all and of wall times too."""
-    files = (path for path in checkpoint.rglob("*") if path.is_file())
-    names = {str(path.relative_to(checkpoint)): path.read_bytes() for path in files}
-    return {name: held for name, held in names.items() if name != "SHA256SUMS"}
-
-
-def same_bits(one, other):
-    assert (one / "series.csv").read_bytes() == (other / "series.csv").read_bytes()
-    assert datasets(one / "results.h5") == datasets(other / "results.h5")
-    kept, others = state(one / "checkpoint"), state(other / "checkpoint")
-    assert len(kept) > 2
-    assert kept.keys() == others.keys()
-    assert [name for name in kept if kept[name] != others[name]] == []
+from bits import by_command, same_bits
+from conftest import ROOT
 
 
 def test_a_run_has_the_bits_of_the_command(column, command, tmp_path):
@@ -60,11 +29,15 @@ def test_a_resumed_run_has_the_bits_of_an_uninterrupted_one(column, tmp_path):
     with column.start(tmp_path / "parts") as simulation:
         simulation.advance_to(0.9)
         assert simulation.ending is None
+    assert simulation.ending == "checkpointed" and simulation.folder == tmp_path / "parts"
     again = column.start(tmp_path / "parts", resume=True)
     assert again.windows == 18
     assert again.run() == "finished"
     again.close()
+    assert again.ending == "finished"
     same_bits(whole.folder, tmp_path / "parts")
+    page = whole.report()
+    assert page == whole.folder / "report.html" and "mean_temperature" in page.read_text("utf-8")
 
 
 def test_what_is_wrong_with_a_case_is_said_in_the_words_of_the_command(column, command, tmp_path):
@@ -164,6 +137,18 @@ def test_results_have_units_and_the_last_committed_state(column, tmp_path):
     assert results.series_xarray()["quantities.pressure_drop"].attrs["units"] == "Pa"
     with pytest.raises(calcine.CaseError, match="not the results folder"):
         calcine.Results(tmp_path)
+
+
+def test_a_profile_has_the_means_of_layers(tmp_path):
+    case = calcine.Case.from_file(ROOT / "cases/heated-bed.toml").set("time.end", "1 s")
+    results = case.run(tmp_path / "run")
+    line = results.plot_profile("temperature").lines[0]
+    place, mean = line.get_data()
+    fields = results.fields().isel(process_time=-1)
+    assert np.all(np.diff(place) > 0) and 10 < len(place) < 100
+    low = np.isclose(fields["z"], place[0])
+    expected = np.average(fields["temperature"][low], weights=fields["cell_volume"][low])
+    assert low.sum() > 20 and mean[0] == pytest.approx(float(expected), rel=1e-12)
 
 
 def test_means_over_time_are_those_of_all_windows(column, tmp_path):

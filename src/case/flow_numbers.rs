@@ -55,6 +55,8 @@ struct BedNumbers {
     length: f64,
     /// Ergun's pressure drop in Pa.
     pressure_drop: f64,
+    /// Temperature in K of its gas, the hottest that flows in.
+    temperature: f64,
     /// Velocity of minimum fluidisation in m/s, where the flow goes up.
     fluidisation: Option<f64>,
 }
@@ -139,11 +141,12 @@ impl FlowNumbers {
                 )
             });
             format!(
-                "flow in bed    {} m/s (superficial){}; pressure drop about {} Pa over {} m (Ergun)",
+                "flow in bed    {} m/s (superficial){}; pressure drop about {} Pa over {} m (Ergun, gas of {} K)",
                 short3(bed.superficial),
                 fluidisation.unwrap_or_default(),
                 short3(bed.pressure_drop),
-                short3(bed.length)
+                short3(bed.length),
+                short3(bed.temperature)
             )
         }));
         lines
@@ -308,6 +311,7 @@ fn bed(
     );
     Some(BedNumbers {
         superficial,
+        temperature,
         length,
         pressure_drop: gradient * length,
         fluidisation: (fluidisation > 0.0).then_some(fluidisation),

@@ -73,7 +73,8 @@ pub(super) fn apply(
         let value = value.trim();
         // A bare text such as 10 s or native needs no quotes on the command line.
         let value: Value = value.parse().unwrap_or_else(|_| value.into());
-        if key.split('.').count() > DEEPEST {
+        let parts = parts(key.trim());
+        if parts.len() > DEEPEST {
             return Err(wrong(
                 "no key lies so deep",
                 "see `calcine schema` for the keys of a case",
@@ -81,7 +82,7 @@ pub(super) fn apply(
         }
         let mut item: &mut Item = document.as_item_mut();
         let mut place = String::new();
-        for part in key.trim().split('.') {
+        for part in parts {
             let help = remedy(item, &place, part);
             if let Some(index) = entry(item, part) {
                 place.push_str(&format!("[{index}]"));
@@ -104,6 +105,28 @@ pub(super) fn apply(
         replace(item, value);
     }
     Ok((document.to_string(), changes))
+}
+
+/// The names of a dotted key; one in quotes may have dots of its own, as in `parameters."one.activation_energy".low`.
+fn parts(key: &str) -> Vec<&str> {
+    let mut quote = None;
+    let dots = key.split(|letter: char| {
+        match quote {
+            Some(open) if open == letter => quote = None,
+            None if letter == '"' || letter == '\'' => quote = Some(letter),
+            _ => {}
+        }
+        letter == '.' && quote.is_none()
+    });
+    let within =
+        |part: &'_ str, mark: char| part.strip_prefix(mark)?.strip_suffix(mark).map(str::len);
+    dots.map(
+        |part| match within(part, '"').or_else(|| within(part, '\'')) {
+            Some(length) => &part[1..=length],
+            None => part,
+        },
+    )
+    .collect()
 }
 
 /// A value without the space and the comments about it.
@@ -191,4 +214,19 @@ fn replace(item: &mut Item, value: Value) {
         }
         (_, value) => Item::Value(value),
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parts;
+
+    #[test]
+    fn dots_between_quotes_part_no_names() {
+        assert_eq!(parts("time.end"), ["time", "end"]);
+        let low = r#"parameters."one.activation_energy".low"#;
+        assert_eq!(parts(low), ["parameters", "one.activation_energy", "low"]);
+        let single = low.replace('"', "'");
+        assert_eq!(parts(&single), parts(low));
+        assert_eq!(parts("a.\"b"), ["a", "\"b"]);
+    }
 }

@@ -234,7 +234,7 @@ impl<'a> Splitting<'a> {
         if let Some(biot) = self.biot.filter(|biot| *biot > WARNING && !self.resolved) {
             all.push(format!(
                 "the Biot number h d/(6 k) of `{name}` is {}, above {WARNING}: real particles of this size are colder inside than at their \
-                 surface, while these have one temperature each and take up heat faster: {}",
+                 surface. These have one temperature each and take up heat faster: {}",
                 short3(biot),
                 remedy(case, self.population.material)
             ));

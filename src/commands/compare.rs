@@ -15,6 +15,7 @@ use crate::assembly::{Pairing, SolverStarts, pairing_cautions};
 use crate::exit;
 use crate::progress::preparing;
 use crate::results::unoccupied;
+use crate::standard_error::tell_line;
 use crate::valid::ValidCase;
 
 /// Runs several pairings of one case and reports how far they differ against the case's bands.
@@ -111,7 +112,7 @@ fn able_ones(valid: &ValidCase, chosen: &Chosen) -> Result<Vec<Pairing>, Failure
         return Err(Failure::new(code, message));
     }
     if !reasons.is_empty() {
-        eprintln!("{}", reasons.trim_start());
+        tell_line(format_args!("{}", reasons.trim_start()));
     }
     Ok(kept)
 }

@@ -15,11 +15,19 @@ pub(super) fn printed(value: f64) -> String {
     }
 }
 
+/// Linux' number of the error of a terminal that is gone.
+const EIO: i32 = 5;
+
+/// True of a pipe that is closed, and of a terminal that is gone.
+fn nobody_reads(cause: &std::io::Error) -> bool {
+    cause.kind() == ErrorKind::BrokenPipe || cause.raw_os_error() == Some(EIO)
+}
+
 /// Prints a line for the user. One who reads no further, such as `head`, is no error.
 pub(super) fn say(text: impl fmt::Display) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(Failure::new(
+        Err(cause) if !nobody_reads(&cause) => Err(Failure::new(
             exit::OTHER,
             format_args!("standard output cannot be written: {cause}"),
         )),

@@ -116,7 +116,7 @@ impl Recorded {
         });
         read.map_err(|cause| {
             let message = format!(
-                "{} cannot be read: {cause}\n  help: name the folder that a run wrote, or the case as well: calcine run CASE --out {} --resume",
+                "{} cannot be read: {cause}\n  help: name the folder that a run wrote, or the case as well, as for a run from Python: calcine run CASE --out {} --resume",
                 path.display(),
                 word(out.as_os_str())
             );

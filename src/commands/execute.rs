@@ -20,6 +20,7 @@ use crate::progress::Progress;
 use crate::results::inertial_number::InertialNumberStatistics;
 use crate::results::{CaseIdentity, Summary, as_finished, same_case};
 use crate::simulation::{self, Ending, Simulation, SimulationError};
+use crate::standard_error::tell_line;
 
 /// How a case is run.
 pub(super) struct Settings<'a> {
@@ -71,7 +72,7 @@ pub(super) fn execute(
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
     tell_buoyancy(case, prepared, settings.progress);
     for warning in &case.warnings {
-        eprintln!("warning: {warning}");
+        tell_line(format_args!("warning: {warning}"));
     }
     let mut builder = Simulation::open(&case.path)
         .gas(settings.pairing.gas)
@@ -91,7 +92,7 @@ pub(super) fn execute(
         recorded.write(out)?;
     }
     for note in simulation.notes() {
-        eprintln!("warning: {note}");
+        tell_line(format_args!("warning: {note}"));
     }
     let ending = simulation.finish();
     let summary = simulation.summary().cloned();
@@ -136,7 +137,9 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
     let number = buoyancy::number(case, &prepared.mesh);
     if shown && number > 0.0 {
         let limit = buoyancy::LIMIT;
-        eprintln!("buoyancy: N sqrt(AF) dt is {number:.2e} (resolved below {limit})");
+        tell_line(format_args!(
+            "buoyancy: N sqrt(AF) dt is {number:.2e} (resolved below {limit})"
+        ));
     }
 }
 
@@ -161,6 +164,7 @@ fn closing(summary: &Summary) -> String {
             .expected_at_s
             .is_some_and(|time| time > summary.process_time_s);
         let (value, unit) = match quantity.value {
+            Some(value) if quantity.unit == "1" => (printed(value), ""),
             Some(value) => (printed(value), quantity.unit.as_str()),
             None if late => ("unknown".to_owned(), ""),
             // There is nothing to measure, as for the mean of no particles.

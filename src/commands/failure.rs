@@ -1,6 +1,6 @@
 //! Why a command fails, in words for the user.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::{fmt, io};
 
 use miette::Diagnostic;
@@ -18,6 +18,8 @@ pub struct Failure {
     pub code: u8,
     /// What to tell the user; ends up on standard error.
     pub message: String,
+    /// The results folder of the run that failed, where one had begun.
+    pub out: Option<PathBuf>,
 }
 
 impl Failure {
@@ -25,7 +27,14 @@ impl Failure {
         Self {
             code,
             message: message.to_string(),
+            out: None,
         }
+    }
+
+    /// Of a run in this results folder.
+    pub(super) fn of_run(self, out: &Path) -> Self {
+        let out = Some(out.to_owned());
+        Self { out, ..self }
     }
 }
 

@@ -42,6 +42,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use signal_hook::consts::SIGXFSZ;
 
 use crate::exit;
+use crate::standard_error::tell_line;
 use console::say;
 use doctor::{MPI_PROGRAM, MPI_VARIABLE};
 pub use failure::Failure;
@@ -104,11 +105,11 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
     match outcome {
         Ok(code) => code,
         Err(failure) => {
-            eprintln!("{}", failure.message.trim_end());
+            tell_line(format_args!("{}", failure.message.trim_end()));
             if let Command::Run(arguments) = &arguments.command
                 && let Err(lost) = arguments.tell_failure(&failure)
             {
-                eprintln!("{}", lost.message);
+                tell_line(format_args!("{}", lost.message));
             }
             failure.code
         }

@@ -132,7 +132,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         return Err(Failure::new(exit::CASE, message));
     }
     let file = folder.join(stem).with_extension("toml");
-    let failed = |cause: std::io::Error| Failure::unwritable(&file, "NAME", &cause);
+    let failed = |cause: std::io::Error| {
+        let path = file.display();
+        let message = format!(
+            "{path} cannot be written ({cause}): name another with `NAME`, in a folder that you can write"
+        );
+        Failure::new(exit::CASE, message)
+    };
     std::fs::create_dir_all(folder).map_err(failed)?;
     let (kind, command) = arguments.like.kind();
     let text = match kind {

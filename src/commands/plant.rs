@@ -354,6 +354,7 @@ pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
         sweep::table_is_free(path)?;
     }
     sweep::own_table(&out, names.iter().map(String::as_str))?;
+    sweep::own_runs(&out, &jobs)?;
     let kind = sweep::Kind {
         name: &base.name,
         title: &base.title,

@@ -27,7 +27,7 @@ const EXIT_CODES: &str = "
 | 5 | a quantity lies outside its band, or a solver breaks a law of `calcine conform` |
 | 6 | with `--strict`: complete and within all bands, but with [warnings](results.md#warnings), of `check` too |
 | 75 | stopped with a checkpoint; `--resume` continues |
-| 130 | interrupted a second time and ended at once; `--resume` continues from the last checkpoint, where there is one |
+| 130 | interrupted before the run began, or a second time, and ended at once; `--resume` continues from the last checkpoint, where there is one |
 ";
 
 /// Text of a cell of a table.

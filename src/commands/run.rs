@@ -81,9 +81,7 @@ impl Arguments {
         if !self.json {
             return Ok(());
         }
-        let resumed = self.resume.iter().flatten().find(|folder| folder.is_dir());
-        let out = self.out.as_deref().or(resumed.map(PathBuf::as_path));
-        say(told_as_json::failed(failure, out)?)
+        say(told_as_json::failed(failure)?)
     }
 
     /// An option that is given and that only beds have.
@@ -225,7 +223,8 @@ pub(super) fn run(
             line.resume()
         ),
     };
-    let done = execute::execute(&case, &prepared, &settings)?;
+    let done = execute::execute(&case, &prepared, &settings);
+    let done = done.map_err(|failure| failure.of_run(&out))?;
     // Written before anything is printed: standard output may be lost.
     let complete = [exit::OK, exit::OUTSIDE_BANDS, exit::WARNINGS].contains(&done.code);
     let page = complete.then(|| crate::report::write(&out));

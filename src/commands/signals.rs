@@ -8,6 +8,7 @@ use signal_hook::iterator::Signals;
 
 use super::failure::Failure;
 use crate::exit;
+use crate::standard_error::tell_line;
 
 /// Turns Ctrl-C, SIGTERM, SIGHUP (a terminal that closes) and `--stop-after` into interrupts. Where SIGHUP is ignored, as under
 /// `nohup`, it stays so.
@@ -74,9 +75,9 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Ends the process where the run does not.
 fn end_at_once() {
     std::thread::sleep(PATIENCE);
-    eprintln!(
+    tell_line(format_args!(
         "interrupted twice, and the run did not come to a place where it can stop: ended; `--resume` goes on from its last checkpoint"
-    );
+    ));
     std::process::exit(exit::INTERRUPTED.into());
 }
 

@@ -20,6 +20,7 @@ use crate::results::files::{REPORT, directory};
 use crate::results::read::Series;
 use crate::results::{CaseIdentity, ResultsError, SUMMARY, Summary, same_case};
 use crate::simulation::{self, OWN_LOG};
+use crate::standard_error::tell;
 
 /// Runs a case once for each combination of values and prints one table.
 ///
@@ -103,6 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     });
     let jobs = jobs(&out, combine(&axes));
     own_table(&out, keys(&axes))?;
+    own_runs(&out, &jobs)?;
     // Every case and folder is checked before the first one runs, and that the table can be written after the last one.
     if let Some(path) = &arguments.table {
         table_is_free(path)?;
@@ -198,7 +200,7 @@ impl Arguments {
                 let settings = chosen[place].settings.join("  ");
                 say(format_args!("{settings}  {}", ending(end.code)))?;
                 if !end.shown {
-                    eprint!("{}", end.told);
+                    tell(format_args!("{}", end.told));
                 }
                 gathered = sweep.gather()?;
                 Ok(())
@@ -327,6 +329,27 @@ pub(super) fn ending(code: u8) -> String {
         exit::OUTSIDE_BANDS => "complete, outside its bands".into(),
         code => format!("failed, exit code {code}"),
     }
+}
+
+/// Refuses a folder with runs of other values, which would no longer be in its table and page.
+pub(super) fn own_runs(out: &Path, jobs: &[Job]) -> Result<(), Failure> {
+    let entries = std::fs::read_dir(out).into_iter().flatten().flatten();
+    let runs = entries.map(|entry| entry.path());
+    let runs = runs.filter(|path| path.join(SUMMARY).is_file());
+    let mut others: Vec<PathBuf> = runs
+        .filter(|path| jobs.iter().all(|job| job.folder != *path))
+        .collect();
+    others.sort();
+    let Some(first) = others.first() else {
+        return Ok(());
+    };
+    let message = format!(
+        "{} has a run that is not of this sweep, which its table and page would leave out ({} in all)\n  help: name another folder with `--out`, \
+         or add its values to `--set`: what is complete is not run again",
+        first.display(),
+        others.len()
+    );
+    Err(Failure::new(exit::CASE, message))
 }
 
 /// Refuses a folder whose `sweep.csv` is no table of a sweep of some key, or whose page is none of a sweep.

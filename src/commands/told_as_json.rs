@@ -14,11 +14,11 @@ use crate::results::files;
 #[derive(Debug, Serialize)]
 struct End<'a> {
     exit_code: u8,
-    /// Of a run that failed, where its command line names it.
+    /// None of a run whose case or command line was refused.
     out: Option<&'a Path>,
     /// Of a complete run.
     report: Option<&'a Path>,
-    /// `summary.json`; none of a run that failed.
+    /// `summary.json`, where the run wrote one.
     summary: Value,
     /// What standard error tells of a run that failed.
     error: Option<&'a str>,
@@ -43,12 +43,17 @@ pub(super) fn line(code: u8, out: &Path, report: Option<&Path>) -> Result<String
 }
 
 /// The line of a run that failed.
-pub(super) fn failed(failure: &Failure, out: Option<&Path>) -> Result<String, Failure> {
+pub(super) fn failed(failure: &Failure) -> Result<String, Failure> {
+    let out = failure.out.as_deref();
+    // The folder of a run that was refused may have the summary of another one.
+    let own = out.filter(|_| failure.code != exit::CASE);
+    let text = own.and_then(|out| fs::read_to_string(out.join(files::SUMMARY)).ok());
+    let summary = text.and_then(|text| serde_json::from_str(&text).ok());
     let end = End {
         exit_code: failure.code,
         out,
         report: None,
-        summary: Value::Null,
+        summary: summary.unwrap_or_default(),
         error: Some(failure.message.trim_end()),
     };
     serde_json::to_string(&end)

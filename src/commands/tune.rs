@@ -20,6 +20,7 @@ use crate::case::{kind_of, read_tuning};
 use crate::exit;
 use crate::report::number::figure;
 use crate::results::{ResultsError, files};
+use crate::standard_error::tell_line;
 use crate::tuning::case::TuningCase;
 use crate::tuning::outcome::TuningOutcome;
 use crate::tuning::page::write_page;
@@ -159,7 +160,7 @@ pub(super) fn tune(line: &Tuning<'_>) -> Result<u8, Failure> {
     let page = write_page(&out, &case, &found).map_err(failed)?;
     say(closing(&case, &found))?;
     for warning in &found.warnings {
-        eprintln!("warning: {warning}");
+        tell_line(format_args!("warning: {warning}"));
     }
     say(format_args!("report: {}", page.display()))?;
     Ok(exit::OK)
@@ -210,7 +211,7 @@ struct Watcher {
 impl TuningObserver for Watcher {
     fn stage(&mut self, name: &str) {
         if !self.quiet {
-            eprintln!("{name}");
+            tell_line(format_args!("{name}"));
         }
     }
 
@@ -220,7 +221,11 @@ impl TuningObserver for Watcher {
         }
         let tell = (generation + 1).is_multiple_of(20) || generation + 1 == self.generations;
         if tell && !self.quiet {
-            eprintln!("generation {} of {}", generation + 1, self.generations);
+            tell_line(format_args!(
+                "generation {} of {}",
+                generation + 1,
+                self.generations
+            ));
         }
     }
 
@@ -239,10 +244,10 @@ fn closing(case: &TuningCase, found: &TuningOutcome) -> String {
     }
     for one in &found.parameters {
         let space = if one.unit.is_empty() { "" } else { " " };
-        text += &format!("{} = {}{space}{}", one.name, short(one.value), one.unit);
+        text += &format!("{} = {}{space}{}", one.name, number(one.value), one.unit);
         if let Some([low, high]) = one.interval.or(one.bootstrap) {
             let level = figure(100.0 * case.intervals.level, 3);
-            text += &format!("  ({level} %: {} to {})", short(low), short(high));
+            text += &format!("  ({level} %: {} to {})", number(low), number(high));
         }
         text.push('\n');
     }
@@ -254,6 +259,15 @@ fn closing(case: &TuningCase, found: &TuningOutcome) -> String {
         );
     }
     text.trim_end().to_owned()
+}
+
+/// A number as the end of a tuning shows it: six digits, with an exponent from ten millions on.
+fn number(value: f64) -> String {
+    let text = short(value);
+    match text.parse::<f64>() {
+        Ok(rounded) if rounded.abs() >= 1e7 => format!("{rounded:e}"),
+        _ => text,
+    }
 }
 
 /// `calcine check` of a tuning.

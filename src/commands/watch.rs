@@ -9,6 +9,7 @@ use super::console::say;
 use super::failure::Failure;
 use super::signals::EndSignals;
 use crate::exit;
+use crate::standard_error::tell_line;
 use crate::watch::{ReportWriter, WatchedRun};
 
 /// Shows a run in the browser while it goes on: its report with progress, curves and the end of its log, on this machine only;
@@ -38,7 +39,10 @@ pub(super) fn run(arguments: &Arguments, report: ReportWriter) -> Result<u8, Fai
         )
     })?;
     say(format_args!("http://{address}/"))?;
-    eprintln!("{} is shown there; Ctrl-C ends this", dir.display());
+    tell_line(format_args!(
+        "{} is shown there; Ctrl-C ends this",
+        dir.display()
+    ));
     signals.wait();
     Ok(exit::OK)
 }

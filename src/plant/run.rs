@@ -25,6 +25,7 @@ use crate::results::sheet::number;
 use crate::results::summary::{CaseName, RunFailure};
 use crate::results::{CASE, CaseIdentity, ResultsError, SUMMARY, Verdict, files, kind, same_case};
 use crate::simulation::claim;
+use crate::standard_error::tell_line;
 
 /// How a run begins, and what it shows.
 pub struct PlantStart<'a> {
@@ -201,7 +202,7 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
     };
     if let Some((saved, told)) = saved {
         if let Some(told) = told {
-            eprintln!("warning: {told}");
+            tell_line(format_args!("warning: {told}"));
         }
         same_case(out, &saved.case_hash, identity(case))?;
         let mut run = PlantRun::new(plant, integrator, tolerance)?;
@@ -241,7 +242,9 @@ fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, 
                     fact: "it holds no checkpoint of a plant",
                 })?;
             if let Some(told) = told {
-                eprintln!("warning: {told}; the run begins from the checkpoint before it");
+                tell_line(format_args!(
+                    "warning: {told}; the run begins from the checkpoint before it"
+                ));
             }
             let (found, own) = (state.unknowns().len(), plant.unknowns());
             if found != own {

@@ -41,13 +41,16 @@ pub(super) fn residuals(series: &Series) -> String {
             y: series.column(name),
             stroke: Stroke::Solid,
         };
+        // What this run does not tell has no name beside the plot either.
+        let curves = columns.iter().enumerate().map(curve);
+        let curves = curves.filter(|curve| curve.y.iter().any(|value| *value > 0.0));
         let plot = Plot {
             title: title.into(),
             x_label: TIME,
             logarithmic: true,
             above: None,
             band: None,
-            curves: columns.iter().enumerate().map(curve).collect(),
+            curves: curves.collect(),
         };
         plot.render()
     };

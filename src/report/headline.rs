@@ -36,8 +36,13 @@ pub(super) fn headline(summary: &Summary) -> String {
         ),
         (
             "wall time",
-            span(wall),
+            if wall.is_finite() {
+                span(wall)
+            } else {
+                "–".into()
+            },
             match summary.verdict {
+                Verdict::Running if wall.is_nan() => "told by the first checkpoint".into(),
                 // That of the last checkpoint, unlike the process time.
                 Verdict::Running => "at the last checkpoint".into(),
                 _ => format!(

@@ -80,8 +80,8 @@ pub(crate) fn page(directory: &Path) -> Result<String, ResultsError> {
     let picture = picture::render(directory, |shade| view.as_ref()?.range(shade))?;
     page.section(
         "Bed and gas",
-        "A cut through the middle, seen from the side: gas cells and particles in one colour scale, that of \
-         particles' speeds where all have one temperature.",
+        "A cut through the middle, seen from the side. Gas cells and particles are coloured by temperature, in one scale; where all of \
+         it is one temperature, by their speeds.",
         &picture.html,
     );
     let view = view.zip(picture.shade);

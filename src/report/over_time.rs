@@ -20,7 +20,10 @@ pub(super) fn plots(summary: &Summary, series: &Series) -> String {
         curves,
     };
     let mut html = plot(
-        "Temperature of each particle in K".into(),
+        match series.particles().is_empty() {
+            true => "Temperature of the particles in K".into(),
+            false => "Temperature of each particle in K".into(),
+        },
         None,
         particle_curves(series, time),
     )

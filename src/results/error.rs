@@ -6,6 +6,14 @@ use calcine_coupler::observer::ObserverError;
 use miette::Diagnostic;
 use thiserror::Error;
 
+/// What else can be done about the run in a folder: one that is complete does not go on.
+fn going_on(state: &str) -> &'static str {
+    match state {
+        "complete" => "",
+        _ => ", continue that run by `--resume`",
+    }
+}
+
 /// Results that cannot be written or read.
 #[derive(Debug, Error, Diagnostic)]
 pub enum ResultsError {
@@ -15,8 +23,8 @@ pub enum ResultsError {
         path.display()
     )]
     #[diagnostic(help(
-        "write elsewhere with `--out DIR`, continue that run by `--resume`, or remove the \
-         directory"
+        "write elsewhere with `--out DIR`{}, or remove the directory",
+        going_on(state)
     ))]
     Occupied {
         /// The directory.

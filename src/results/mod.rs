@@ -15,6 +15,7 @@ pub mod inertial_number;
 pub(crate) mod marked;
 mod means;
 mod moment;
+mod now;
 mod open;
 mod passages;
 mod probe;

@@ -11,7 +11,7 @@ use super::flows::FlowSummary;
 use super::inertial_number::InertialNumberStatistics;
 use super::steps::StepSummary;
 use super::warnings::Warnings;
-use super::{ResultsError, STATUS, SUMMARY};
+use super::{ResultsError, SUMMARY};
 use crate::case::units::{short, shown};
 
 /// How a quantity, or the run, stands against what the case expects.
@@ -421,6 +421,7 @@ pub fn must_hold_run(directory: &Path) -> Result<(), ResultsError> {
     Err(ResultsError::NoResults {
         path: directory.to_owned(),
         fact: match directory {
+            one if one.is_file() => "it is a file; name the results folder of a run",
             one if !one.is_dir() => "there is no such folder",
             one if one.join(COMPARISON).exists() => {
                 "it is that of a comparison, whose page is compare.html; its runs are in the folders below it"
@@ -437,21 +438,6 @@ impl Summary {
         let path = directory.join(SUMMARY);
         serde_json::from_str(&files::read(&path)?)
             .map_err(|error| ResultsError::content(&path, error.to_string()))
-    }
-
-    /// The same, with the times and windows that a run in progress has come to since it wrote it.
-    pub fn now(directory: &Path) -> Result<Self, ResultsError> {
-        let mut summary = Self::read(directory)?;
-        if summary.verdict == Verdict::Running {
-            // A status that is not there yet, or is no longer, says nothing new.
-            let text = std::fs::read_to_string(directory.join(STATUS)).unwrap_or_default();
-            let status: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-            let time = |name: &str, before: f64| status[name].as_f64().unwrap_or(before);
-            summary.process_time_s = time("process_time_s", summary.process_time_s);
-            summary.motion_time_s = time("motion_time_s", summary.motion_time_s);
-            summary.windows = status["windows"].as_u64().unwrap_or(summary.windows);
-        }
-        Ok(summary)
     }
 
     /// Replaces the summary of a result directory.

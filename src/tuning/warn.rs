@@ -52,6 +52,11 @@ pub(crate) fn unlike_ends(loss: f64) -> String {
     )
 }
 
+/// A number that none of the laws has.
+pub(crate) fn of_no_law(name: &str) -> String {
+    format!("`parameters.{name}` has no effect: none of the laws that are compared has it")
+}
+
 /// A curve that tells nothing of energies without a law.
 pub(super) fn left_out(name: &str) -> String {
     format!("{name} is left out: it has no mass, too few values, or a conversion below 5 %")

@@ -421,8 +421,8 @@ fn section_of<'a>(page: &'a str, name: &str) -> Option<&'a str> {
 /// The page.
 fn page(sections: &[String], left_out: &[&str]) -> String {
     let mut page = String::from(
-        "# Gallery\n\nThe shipped cases, each with the picture of its report, the time of its run where the page was made (two cores, shared with other \
-         work), the pairings that take it, and what to change first. `cargo xtask gallery` makes this page from runs; `calcine new NAME --like CASE` makes a case of your own from one of \
+        "# Gallery\n\nThe shipped cases, each with the picture of its report, the time of its run where the page was made (two cores, which other \
+         work may have shared), the pairings that take it, and what to change first. `cargo xtask gallery` makes this page from runs; `calcine new NAME --like CASE` makes a case of your own from one of \
          them.\n\n",
     );
     for section in sections {

@@ -71,8 +71,20 @@ pub fn test(workspace: &Workspace) -> TaskResult<()> {
         .current_dir(workspace.root.join("python"))
         .env("PYTHONPATH", &site)
         .env("PYTHONDONTWRITEBYTECODE", "1")
+        // External solvers are found beside the command.
+        .env("PATH", before_path(&built))
         .env("CALCINE", built.join("calcine"));
     loud_step("tests of the Python package", || visibly(&mut tests))
+}
+
+/// The variable PATH with a folder before all others.
+fn before_path(folder: &Path) -> OsString {
+    let mut path = folder.as_os_str().to_owned();
+    if let Some(others) = env::var_os("PATH") {
+        path.push(":");
+        path.push(others);
+    }
+    path
 }
 
 /// Builds command and package in the profile for runs and prints what runs from Python cost beyond the command's, in processor time.

@@ -71,6 +71,8 @@ fn grid(
                 rule,
                 "spheres pressed together overlap by 5 % of their diameter at most",
             );
+            // One value may stand for all three.
+            break;
         }
     }
     if let Some(MeshSpec::Box { origin, size, .. }) = mesh {

@@ -69,7 +69,7 @@ pub(in crate::case) fn tuning(
     let complete = complete
         && !read.curves.is_empty()
         && take_loss(root, &mut model, measured.map(|one| one.loss)).is_some();
-    let parameters = parameters(root, &known_parameters(&model));
+    let parameters = parameters(root, &known_parameters(&model), &mut read.warnings);
     if !complete {
         return None;
     }
@@ -292,15 +292,28 @@ fn known_parameters(spec: &SampleSpec) -> Vec<ModelParameter> {
     all
 }
 
+/// True of the number of some law, be it compared or not.
+fn of_another_law(name: &str) -> bool {
+    let number = name.rsplit('.').next().unwrap_or(name);
+    let mut numbers = CONVERSION_LAWS.iter().flat_map(|law| law.parameters);
+    numbers.any(|one| one.name == number)
+}
+
 /// The parameters.
-fn parameters(root: &TableReader<'_>, known: &[ModelParameter]) -> Vec<TunedParameter> {
+fn parameters(
+    root: &TableReader<'_>,
+    known: &[ModelParameter],
+    warnings: &mut Vec<String>,
+) -> Vec<TunedParameter> {
     let Some(table) = root.table("parameters") else {
         return Vec::new();
     };
     let mut all = Vec::new();
     for (name, one) in table.named() {
         let own = known.iter().find(|own| own.name == name);
-        if own.is_none() {
+        if own.is_none() && of_another_law(&name) {
+            warnings.push(warn::of_no_law(&name));
+        } else if own.is_none() {
             let names: Vec<&str> = known.iter().map(|one| one.name.as_str()).collect();
             let help = format!("its parameters are {}", names.join(", "));
             one.fail_whole("is not a parameter of this model", &help);

@@ -368,7 +368,7 @@ fn falls(mass: &[f64], largest: f64) -> Result<(), (usize, String, String)> {
             100.0 * worst.1 / fall
         );
         let help = format!(
-            "subtract the blank run (buoyancy), cut the row, or allow it: largest_rise = \"{:.0} %\"",
+            "subtract the blank run (buoyancy), cut the row, or, of noise, smooth it or allow it: largest_rise = \"{:.0} %\"",
             (100.0 * worst.1 / fall).ceil()
         );
         return Err((worst.0, fact, help));
