@@ -1,5 +1,6 @@
 //! The Python package: its environment below the target directory, its tests, its wheel.
 
+use std::env;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
