@@ -240,7 +240,19 @@ fn closing(case: &TuningCase, found: &TuningOutcome) -> String {
     if let Some(law) = found.laws.get(found.chosen)
         && found.laws.len() > 1
     {
-        text += &format!("law {} of {} compared\n", law.law, found.laws.len());
+        text += &format!("law {} of {} compared", law.law, found.laws.len());
+        let better = found
+            .laws
+            .iter()
+            .filter(|one| one.criterion < law.criterion);
+        if let Some(best) = better.min_by(|a, b| a.criterion.total_cmp(&b.criterion)) {
+            text += &format!(
+                ": {} fits hardly better and has more parameters (Akaike's criterion lower by {:.1})",
+                best.law,
+                law.criterion - best.criterion
+            );
+        }
+        text.push('\n');
     }
     for one in &found.parameters {
         let space = if one.unit.is_empty() { "" } else { " " };

@@ -48,27 +48,69 @@ impl TetMap {
     }
 }
 
+/// Smallest of the coordinates.
+#[inline]
+fn least([a, b, c, d]: Barycentric) -> f64 {
+    a.min(b).min(c.min(d))
+}
+
+/// The face that a ray from the centre of a cell through a place meets first, where faces are plane and the cell is convex; a first
+/// guess in any other.
+fn face_behind(mesh: &Mesh, cell: usize, place: Vec3) -> Option<u32> {
+    let centre = mesh.cell_centre()[cell];
+    let way = place - centre;
+    let mut best = (0.0, None);
+    for &face in mesh.faces_of(cell) {
+        let area = mesh.face_area()[face as usize];
+        let distance = (mesh.face_centre()[face as usize] - centre).dot(&area);
+        // Of either orientation of the area.
+        let share = way.dot(&area) / distance;
+        if share > best.0 {
+            best = (share, Some(face));
+        }
+    }
+    best.1
+}
+
 impl TetPlace {
     /// Tetrahedra of a cell.
     pub fn of_cell(mesh: &Mesh, cell: usize) -> impl Iterator<Item = Self> + '_ {
-        mesh.faces_of(cell).iter().flat_map(move |&face| {
-            let edges = mesh.face_points(face as usize).len() as u32;
-            (0..edges).map(move |edge| Self {
-                cell: cell as u32,
-                face,
-                edge,
-            })
+        let faces = mesh.faces_of(cell).iter();
+        faces.flat_map(move |&face| Self::of_face(mesh, cell, face))
+    }
+
+    /// Those of one of its faces.
+    fn of_face(mesh: &Mesh, cell: usize, face: u32) -> impl Iterator<Item = Self> {
+        let edges = mesh.face_points(face as usize).len() as u32;
+        (0..edges).map(move |edge| Self {
+            cell: cell as u32,
+            face,
+            edge,
         })
     }
 
     /// The tetrahedron of a cell that holds a place, or comes nearest to it, with the place's coordinates in it; `None` where all
     /// fold over.
     pub fn nearest(mesh: &Mesh, cell: usize, place: Vec3) -> Option<(Self, Barycentric)> {
+        if let Some(face) = face_behind(mesh, cell, place) {
+            for found in Self::of_face(mesh, cell, face) {
+                let map = found.map(mesh);
+                let share = map.of(place);
+                if map.determinant > 0.0 && least(share) > 0.0 {
+                    return Some((found, share));
+                }
+            }
+        }
+        Self::nearest_of_all(mesh, cell, place)
+    }
+
+    /// The same by looking at each of them.
+    fn nearest_of_all(mesh: &Mesh, cell: usize, place: Vec3) -> Option<(Self, Barycentric)> {
         let mut best = (f64::NEG_INFINITY, None);
         for found in Self::of_cell(mesh, cell) {
             let map = found.map(mesh);
             let share = map.of(place);
-            let least = share.into_iter().fold(f64::INFINITY, f64::min);
+            let least = least(share);
             if map.determinant > 0.0 && least > best.0 {
                 best = (least, Some((found, share)));
                 if least > 0.0 {
@@ -114,6 +156,57 @@ impl TetPlace {
             centre,
             rows: crossed.map(|row| row / determinant),
             determinant: side * determinant,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance::manufactured::CellShape;
+    use crate::conformance::manufactured::meshes::shaped_box;
+
+    #[test]
+    fn the_tetrahedron_behind_a_face_is_the_one_that_a_search_of_all_finds() {
+        for shape in [
+            CellShape::Hexahedra(0.0),
+            CellShape::Hexahedra(0.25),
+            CellShape::Polyhedra(0.2),
+            CellShape::Tetrahedra(0.15),
+        ] {
+            let mesh = shaped_box(shape, 3, |place| place).unwrap();
+            let mut by_face = 0;
+            for cell in 0..mesh.cells() {
+                let centre = mesh.cell_centre()[cell];
+                assert_eq!(
+                    TetPlace::nearest(&mesh, cell, centre),
+                    TetPlace::nearest_of_all(&mesh, cell, centre)
+                );
+                for corner in TetPlace::of_cell(&mesh, cell) {
+                    let corners = corner.corners(&mesh);
+                    for k in 0..8 {
+                        // Within the tetrahedron and beyond its face.
+                        let share = |factor: f64| 0.02 + (f64::from(k) * factor).fract();
+                        let weights = [share(0.618), share(0.414), share(0.732), share(0.5)];
+                        let sum: f64 = weights.iter().sum();
+                        let mut place = Vec3::zeros();
+                        for (corner, weight) in corners.iter().zip(weights) {
+                            place += *corner * (weight / sum);
+                        }
+                        if k % 4 == 3 {
+                            place = centre + 1.7 * (place - centre);
+                        }
+                        let found = TetPlace::nearest(&mesh, cell, place);
+                        assert_eq!(found, TetPlace::nearest_of_all(&mesh, cell, place));
+                        let behind = face_behind(&mesh, cell, place);
+                        by_face += usize::from(found.map(|found| found.0.face) == behind);
+                    }
+                }
+            }
+            let all: usize = (0..mesh.cells())
+                .map(|cell| 8 * TetPlace::of_cell(&mesh, cell).count())
+                .sum();
+            assert!(by_face * 10 > all * 7, "{by_face} of {all}");
         }
     }
 }

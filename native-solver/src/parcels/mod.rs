@@ -311,14 +311,15 @@ impl NativeParcels {
         let rate = |row: usize| {
             let (parcel, flight) = (&parcels[row], &flights[row]);
             let cell = parcel.place.cell as usize;
-            let crossing = |velocity: Vec3| {
-                let faces = mesh.faces_of(cell).iter();
-                let out =
-                    faces.map(|&face| velocity.dot(&mesh.outward(cell, face as usize)).max(0.0));
-                out.sum::<f64>() / mesh.cell_volume()[cell]
-            };
             let last = flight.after(left, parcel.velocity).1;
-            crossing(parcel.velocity).max(crossing(last))
+            let mut through = [0.0; 2];
+            for &face in mesh.faces_of(cell) {
+                let area = mesh.face_area()[face as usize];
+                through[0] += parcel.velocity.dot(&area).abs();
+                through[1] += last.dot(&area).abs();
+            }
+            // What goes out of a closed cell is half of what goes through its faces.
+            0.5 * through[0].max(through[1]) / mesh.cell_volume()[cell]
         };
         let (fastest, rate) = match parcels.len() {
             0 => (0, 0.0),
