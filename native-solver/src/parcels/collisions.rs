@@ -8,7 +8,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::parcels::collisions::{LocalSolid, damped_share, redrawn_share};
 use calcine_coupler::physics::sphere;
 
-use super::packing::{CellSolid, RowAmounts};
+use super::packing::RowAmounts;
 use super::step::FlyingParcel;
 
 /// Averages of a cell over the parcels in it.
@@ -51,13 +51,13 @@ pub struct CollisionStep<'a> {
 
 impl CollisionStep<'_> {
     /// Relaxes velocities to the means of their cells; elastic collisions do not.
-    pub fn damp(&self, parcels: &mut [FlyingParcel], solid: &CellSolid) {
+    pub fn damp(&self, parcels: &mut [FlyingParcel], fraction: &[f64]) {
         if self.collisions.times.restitution >= 1.0 {
             return;
         }
-        let cells = self.cells(parcels, solid.fraction.len());
+        let cells = self.cells(parcels, fraction.len());
         let share = |cell: usize| {
-            let Some(local) = cells[cell].local(solid.fraction[cell]) else {
+            let Some(local) = cells[cell].local(fraction[cell]) else {
                 return 0.0;
             };
             damped_share(self.time * self.collisions.times.damping(&local))
@@ -70,11 +70,11 @@ impl CollisionStep<'_> {
     }
 
     /// Draws velocities anew, and scales all of a cell so that momentum and energy are kept.
-    pub fn redraw(&self, parcels: &mut [FlyingParcel], solid: &CellSolid) {
-        let before = self.cells(parcels, solid.fraction.len());
+    pub fn redraw(&self, parcels: &mut [FlyingParcel], fraction: &[f64]) {
+        let before = self.cells(parcels, fraction.len());
         for (row, parcel) in parcels.iter_mut().enumerate() {
             let cell = parcel.place.cell as usize;
-            let Some(local) = before[cell].local(solid.fraction[cell]) else {
+            let Some(local) = before[cell].local(fraction[cell]) else {
                 continue;
             };
             let share = redrawn_share(self.time * self.collisions.times.isotropy(&local));
@@ -84,7 +84,7 @@ impl CollisionStep<'_> {
                 parcel.velocity = before[cell].mean + deviation * draw.gaussian();
             }
         }
-        let after = self.cells(parcels, solid.fraction.len());
+        let after = self.cells(parcels, fraction.len());
         for parcel in parcels {
             let cell = parcel.place.cell as usize;
             let (old, new) = (&before[cell], &after[cell]);

@@ -247,8 +247,9 @@ impl NativeParcels {
             time,
         };
         if collisions.damping {
-            let solid = self.packer.solid(&self.tetrahedra, parcels, amounts);
-            step.damp(parcels, &solid);
+            let volume = amounts.volume;
+            let fraction = self.packer.fraction(&self.tetrahedra, parcels, volume);
+            step.damp(parcels, &fraction);
         }
         let packing = &self.motion.packing;
         let action = self.packer.act(
@@ -259,8 +260,9 @@ impl NativeParcels {
         )?;
         let given = action.impulse + self.rub(&action.stress, (parcels, amounts), time);
         if collisions.isotropy {
-            let solid = self.packer.solid(&self.tetrahedra, parcels, amounts);
-            step.redraw(parcels, &solid);
+            let volume = amounts.volume;
+            let fraction = self.packer.fraction(&self.tetrahedra, parcels, volume);
+            step.redraw(parcels, &fraction);
         }
         Ok(given)
     }
@@ -288,15 +290,9 @@ impl NativeParcels {
     /// Solid fraction of each cell of the mesh by linear weights, as the stress has it.
     pub fn solid_fraction(&self) -> Vec<f64> {
         let rows = 0..self.rows.id.len();
-        let volume: Vec<f64> = rows.clone().map(|row| self.rows.row_volume(row)).collect();
-        let mass: Vec<f64> = rows.map(|row| self.rows.row_mass(row)).collect();
-        let amounts = RowAmounts {
-            volume: &volume,
-            mass: &mass,
-        };
+        let volume: Vec<f64> = rows.map(|row| self.rows.row_volume(row)).collect();
         self.packer
-            .solid(&self.tetrahedra, &self.flying(), amounts)
-            .fraction
+            .fraction(&self.tetrahedra, &self.flying(), &volume)
     }
 
     /// Number of equal steps that the rest of a window needs, by the velocities now and as they would be at its end.

@@ -8,9 +8,10 @@
 //! that Newton's method rises to the solution from below. The volume that passes each face moves the parcels, once more with more stress where that leaves a cell above close packing, the impulse
 //! −Δt (τ_N − τ_P) A_f n of each face is shared by the masses at both its sides.
 
+use std::ops::{Add, Mul};
 use std::sync::Arc;
 
-use calcine_coupler::mapping::linear::{CornerValues, LinearWeights};
+use calcine_coupler::mapping::linear::{CornerValues, LinearWeights, Weighable};
 use calcine_coupler::mesh::tetrahedra::{Barycentric, TetPlace};
 use calcine_coupler::numerics::parallel;
 use calcine_coupler::parcels::ParcelPacking;
@@ -63,6 +64,50 @@ pub struct CellSolid {
     pub yielding: Vec<f64>,
     /// Momentum in N s.
     pub momentum: Vec<Vec3>,
+}
+
+/// What of parcels belongs to a corner or a cell.
+#[derive(Clone, Copy)]
+struct Belonging {
+    volume: f64,
+    mass: f64,
+    yielding: f64,
+    momentum: Vec3,
+}
+
+impl Add for Belonging {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            volume: self.volume + other.volume,
+            mass: self.mass + other.mass,
+            yielding: self.yielding + other.yielding,
+            momentum: self.momentum + other.momentum,
+        }
+    }
+}
+
+impl Mul<f64> for Belonging {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            volume: self.volume * factor,
+            mass: self.mass * factor,
+            yielding: self.yielding * factor,
+            momentum: self.momentum * factor,
+        }
+    }
+}
+
+impl Weighable for Belonging {
+    const NONE: Self = Self {
+        volume: 0.0,
+        mass: 0.0,
+        yielding: 0.0,
+        momentum: Vec3::NONE,
+    };
 }
 
 /// What acted in a step.
@@ -139,30 +184,50 @@ impl Packer {
         parcels: &[FlyingParcel],
         amounts: RowAmounts<'_>,
     ) -> CellSolid {
-        let (weights, mesh) = (&self.weights, tetrahedra.mesh());
-        let mut volume: CornerValues<f64> = weights.corners(mesh);
-        let mut mass: CornerValues<f64> = weights.corners(mesh);
-        let mut yielding: CornerValues<f64> = weights.corners(mesh);
-        let mut momentum: CornerValues<Vec3> = weights.corners(mesh);
-        for (row, parcel) in parcels.iter().enumerate() {
-            let at = (
-                parcel.place,
-                tetrahedra.map(parcel.place).of(parcel.position),
-            );
-            let (v, m) = (amounts.volume[row], amounts.mass[row]);
-            weights.add(mesh, &mut volume, at, v);
-            weights.add(mesh, &mut mass, at, m);
-            weights.add(mesh, &mut yielding, at, parcel.yielding * m);
-            weights.add(mesh, &mut momentum, at, m * parcel.velocity);
-        }
-        let volumes = weights.gather(mesh, &volume);
-        let fractions = volumes.iter().zip(weights.volume());
+        let all = self.belonging(tetrahedra, parcels, |row| {
+            let (parcel, mass) = (&parcels[row], amounts.mass[row]);
+            Belonging {
+                volume: amounts.volume[row],
+                mass,
+                yielding: parcel.yielding * mass,
+                momentum: mass * parcel.velocity,
+            }
+        });
+        let fractions = all.iter().zip(self.weights.volume());
         CellSolid {
-            fraction: fractions.map(|(solid, whole)| solid / whole).collect(),
-            mass: weights.gather(mesh, &mass),
-            yielding: weights.gather(mesh, &yielding),
-            momentum: weights.gather(mesh, &momentum),
+            fraction: fractions.map(|(one, whole)| one.volume / whole).collect(),
+            mass: all.iter().map(|one| one.mass).collect(),
+            yielding: all.iter().map(|one| one.yielding).collect(),
+            momentum: all.iter().map(|one| one.momentum).collect(),
         }
+    }
+
+    /// The solid fraction of each cell alone.
+    pub fn fraction(
+        &self,
+        tetrahedra: &Tetrahedra,
+        parcels: &[FlyingParcel],
+        volume: &[f64],
+    ) -> Vec<f64> {
+        let all = self.belonging(tetrahedra, parcels, |row| volume[row]);
+        let fractions = all.iter().zip(self.weights.volume());
+        fractions.map(|(solid, whole)| solid / whole).collect()
+    }
+
+    /// What belongs to each cell of what each parcel has.
+    fn belonging<T: Weighable>(
+        &self,
+        tetrahedra: &Tetrahedra,
+        parcels: &[FlyingParcel],
+        value: impl Fn(usize) -> T,
+    ) -> Vec<T> {
+        let (weights, mesh) = (&self.weights, tetrahedra.mesh());
+        let mut corners: CornerValues<T> = weights.corners(mesh);
+        for (row, parcel) in parcels.iter().enumerate() {
+            let share = tetrahedra.map(parcel.place).of(parcel.position);
+            weights.add(mesh, &mut corners, (parcel.place, share), value(row));
+        }
+        weights.gather(mesh, &corners)
     }
 
     /// Before a flight: keeps the mean velocity of the solid, against which the explicit stress is limited. What gravity adds in the step is a
@@ -300,7 +365,7 @@ impl Packer {
                     action.impulse += *mass * change;
                 }
             }
-            let found = self.fraction(tetrahedra, parcels, amounts);
+            let found = self.fraction(tetrahedra, parcels, amounts.volume);
             let fullest = found.iter().copied().fold(0.0, f64::max);
             if fullest <= law.close_packing {
                 return Ok(action);
@@ -320,27 +385,6 @@ impl Packer {
             (parcel.position, parcel.place) = (position, place);
         }
         Ok(action)
-    }
-
-    /// Solid fraction of each cell.
-    fn fraction(
-        &self,
-        tetrahedra: &Tetrahedra,
-        parcels: &[FlyingParcel],
-        amounts: RowAmounts<'_>,
-    ) -> Vec<f64> {
-        let mesh = tetrahedra.mesh();
-        let mut volume: CornerValues<f64> = self.weights.corners(mesh);
-        for (parcel, &amount) in parcels.iter().zip(amounts.volume) {
-            let at = (
-                parcel.place,
-                tetrahedra.map(parcel.place).of(parcel.position),
-            );
-            self.weights.add(mesh, &mut volume, at, amount);
-        }
-        let volumes = self.weights.gather(mesh, &volume);
-        let fractions = volumes.iter().zip(self.weights.volume());
-        fractions.map(|(solid, whole)| solid / whole).collect()
     }
 
     /// Velocity in m/s with which the stress moves a parcel: along the normal of its tetrahedron's face it changes linearly from
