@@ -20,7 +20,7 @@ use crate::results::files::{REPORT, directory};
 use crate::results::read::Series;
 use crate::results::{CaseIdentity, ResultsError, SUMMARY, Summary, same_case};
 use crate::simulation::{self, OWN_LOG};
-use crate::standard_error::tell;
+use crate::standard_error::{tell, tell_line};
 
 /// Runs a case once for each combination of values and prints one table.
 ///
@@ -196,6 +196,14 @@ impl Arguments {
         let mut gathered = sweep.gather()?;
         let chosen = self.chosen(jobs)?;
         if !self.gather {
+            if !self.quiet && self.only.is_none() {
+                let ended = gathered.0.iter().flatten().count();
+                tell_line(format_args!(
+                    "{} runs, {} at once; {ended} have ended before",
+                    jobs.len(),
+                    self.jobs
+                ));
+            }
             let ends = runs.follow(chosen, |place, end| {
                 let settings = chosen[place].settings.join("  ");
                 say(format_args!("{settings}  {}", ending(end.code)))?;
