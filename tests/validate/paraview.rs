@@ -34,16 +34,20 @@ pub fn run() {
     let folder = tempfile::tempdir().unwrap();
     println!("  | run | colours of the picture |");
     // Gas and particles; parcels; the gas alone; particles alone.
-    for (name, end) in [
+    for ((name, end), screen) in [
         ("heated-bed", "time.end=20 s"),
         ("wet-drum", "time.end=0.2 s"),
         ("pipe", "time.end=6 s"),
         ("rotating-drum", "time.end=0.1 s"),
-    ] {
+    ]
+    .into_iter()
+    .zip(120..)
+    {
         let (out, _) = calcine(&shipped(name), folder.path(), name, &[end.into()]);
         let picture = folder.path().join(name).with_extension("png");
         let output = Command::new("xvfb-run")
-            .args(["-a", "pvpython"])
+            // A screen of its own: that of the run before may still be closing.
+            .args(["-a", &format!("--server-num={screen}"), "pvpython"])
             .arg(out.join("open_in_paraview.py"))
             .arg(&picture)
             .output()
