@@ -14,7 +14,7 @@ use crate::results::flows::{FlowAmount, FlowSummary, PatchAmounts};
 /// Ways of energy and of mass by their names in the summary, and in words.
 const ENERGY: [(&str, &str); 9] = [
     ("boundary", "gas through the boundary"),
-    ("particles", "particles and their reactions"),
+    ("particles", "particles"),
     ("gas_storage", "stored in the gas"),
     ("walls", "walls and surroundings"),
     ("sources", "sources in the gas"),
@@ -293,7 +293,7 @@ mod tests {
         };
         let ways = [
             way("gas through the boundary", 100.0, 75.0),
-            way("particles and their reactions", 0.0, 25.0),
+            way("particles", 0.0, 25.0),
         ];
         let svg = sankey(&ways);
         // From "M x top C …" to "… x bottom Z" at its outer end.
