@@ -112,7 +112,7 @@ fn able_ones(valid: &ValidCase, chosen: &Chosen) -> Result<Vec<Pairing>, Failure
         return Err(Failure::new(code, message));
     }
     if !reasons.is_empty() {
-        tell_line(format_args!("{}", reasons.trim_start()));
+        tell_line(reasons.trim_start());
     }
     Ok(kept)
 }

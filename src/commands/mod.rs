@@ -105,11 +105,11 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
     match outcome {
         Ok(code) => code,
         Err(failure) => {
-            tell_line(format_args!("{}", failure.message.trim_end()));
+            tell_line(failure.message.trim_end());
             if let Command::Run(arguments) = &arguments.command
                 && let Err(lost) = arguments.tell_failure(&failure)
             {
-                tell_line(format_args!("{}", lost.message));
+                tell_line(&lost.message);
             }
             failure.code
         }

@@ -75,9 +75,9 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Ends the process where the run does not.
 fn end_at_once() {
     std::thread::sleep(PATIENCE);
-    tell_line(format_args!(
-        "interrupted twice, and the run did not come to a place where it can stop: ended; `--resume` goes on from its last checkpoint"
-    ));
+    tell_line(
+        "interrupted twice, and the run did not come to a place where it can stop: ended; `--resume` goes on from its last checkpoint",
+    );
     std::process::exit(exit::INTERRUPTED.into());
 }
 

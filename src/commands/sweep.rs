@@ -208,7 +208,7 @@ impl Arguments {
                 let settings = chosen[place].settings.join("  ");
                 say(format_args!("{settings}  {}", ending(end.code)))?;
                 if !end.shown {
-                    tell(format_args!("{}", end.told));
+                    tell(&end.told);
                 }
                 gathered = sweep.gather()?;
                 Ok(())

@@ -211,7 +211,7 @@ struct Watcher {
 impl TuningObserver for Watcher {
     fn stage(&mut self, name: &str) {
         if !self.quiet {
-            tell_line(format_args!("{name}"));
+            tell_line(name);
         }
     }
 

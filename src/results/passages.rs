@@ -28,16 +28,13 @@ impl OutflowTrail {
 
     /// Notes the totals at a time, which were those of the last mark until the window began.
     fn mark(&mut self, began: Option<i64>, now: i64, totals: Vec<[f64; 5]>, reach: i64) {
-        match self.marks.last().cloned() {
-            Some((_, before)) if before == totals => {}
-            Some((time, before)) => {
-                // What left in this window left evenly over it, and nothing between the last mark and its start.
-                if let Some(began) = began.filter(|&began| began > time) {
-                    self.marks.push((began, before));
-                }
-                self.marks.push((now, totals));
-            }
-            None => self.marks.push((now, totals)),
+        let last = self.marks.last();
+        if last.is_none_or(|last| last.1 != totals) {
+            // What left in this window left evenly over it, and nothing between the last mark and its start.
+            let still = began.zip(last).filter(|(began, last)| *began > last.0);
+            let still = still.map(|(began, last)| (began, last.1.clone()));
+            self.marks.extend(still);
+            self.marks.push((now, totals));
         }
         // The start stays, and of what is too far back the last.
         let far = self.marks.partition_point(|mark| mark.0 <= now - reach);

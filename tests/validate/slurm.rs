@@ -23,7 +23,7 @@ const LIMIT: Duration = Duration::from_secs(1800);
 /// Process time of the run over MPI, in s.
 const SHORT: u32 = 20;
 /// Wall time in s that the others would take at its pace; through shared memory between a half of that, beside other work, and a
-/// quarter: more than a job with a limit of one minute has.
+/// fifth: more than a job with a limit of one minute has.
 const LONG: f64 = 320.0;
 
 pub fn run() {
