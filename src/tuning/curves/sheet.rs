@@ -384,6 +384,12 @@ mod tests {
         for (head, row, names, values) in [
             ("Time,Temp,Mass", "0.5,20.5,99.5", 3, [0.5, 20.5, 99.5]),
             (
+                "Time,Temp,Mass",
+                "5D-1,2.05d+1,9.95E1",
+                3,
+                [0.5, 20.5, 99.5],
+            ),
+            (
                 "##Temp./°C;Time/min;Mass/%",
                 "20,5;0,5;99,5",
                 3,
