@@ -196,6 +196,10 @@ fn a_snapshot_of_a_version_5_file_and_a_table_of_paraview_are_read() {
     let placed = from_file("a.csv", csv.as_bytes()).unwrap();
     assert_eq!(placed.setup.radius[0], 0.002);
     assert_eq!(placed.setup.position[0].z, 0.03);
+    // Exponents as Fortran writes them.
+    let placed = from_file("a.csv", b"x,y,z,radius\n5D-3,0.5d-2,3E-2,2D-3\n").unwrap();
+    assert_eq!(placed.setup.radius[0], 0.002);
+    assert_eq!(placed.setup.position[0].z, 0.03);
 }
 
 #[test]

@@ -222,3 +222,30 @@ fn the_flows_of_a_run_close_as_its_ledger_does() {
     );
     assert_eq!(particles.inward, 0.0);
 }
+
+#[test]
+fn a_run_without_a_checkpoint_yet_is_told_by_the_last_row_of_its_series() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    column(&out);
+    // As a run writes it at its start.
+    let path = out.join("summary.json");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    summary["verdict"] = "running".into();
+    summary["windows"] = 0.into();
+    for quantity in summary["quantities"].as_object_mut().unwrap().values_mut() {
+        quantity["value"] = serde_json::Value::Null;
+        quantity["at_s"] = serde_json::Value::Null;
+    }
+    fs::write(&path, summary.to_string()).unwrap();
+    let now = Summary::now(&out).unwrap();
+    let series = Series::read(&out).unwrap();
+    for (name, quantity) in &now.quantities {
+        let column = series.column(&format!("quantities.{name}"));
+        assert_eq!(quantity.value, column.last().copied(), "{name}");
+        assert_eq!(quantity.at_s, Some(20.0), "{name}");
+    }
+    assert!(now.quantities.len() > 1 && now.windows > 0);
+    assert!(now.wall_time_s.total.is_nan() && now.ledger.lines.is_empty());
+}

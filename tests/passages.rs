@@ -268,6 +268,9 @@ fn flows_of_species_and_conversions_are_those_of_gas_and_solids_of_the_snapshots
         let reduced = 1.0 - sum(&held[1]) / sum(&held[0]);
         assert!(reduced > 1e-3, "{reduced}");
         close("reduced", found("reduced"), reduced, 1e-10);
+        // Nothing has reacted at the start, to the last bit.
+        let series = Series::read(&out).unwrap();
+        assert_eq!(series.column("quantities.reduced")[0], 0.0);
         close(
             "first",
             found("first"),
