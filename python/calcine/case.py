@@ -51,7 +51,8 @@ class Case:
         out: the results folder; ``results/NAME`` below the working directory unless given.
         resume: goes on from the last checkpoint in ``out``.
         origin: results folder of another run to continue from (``--from`` of the command line).
-        gas: ``native``, ``openfoam`` or ``external``; particles: ``native``, ``liggghts`` or ``external``.
+        gas: ``native``, ``openfoam`` or ``external``; particles: ``native``, ``liggghts``, ``openfoam`` or
+        ``external``.
         """
         return _calcine.start(
             self.path, list(self.changes), gas, particles, out, resume, origin
