@@ -444,7 +444,7 @@ fn exponents_of_yaml_may_follow_d() {
     let factor = |a: &str| {
         let text = format!("reactions:\n- equation: A => B\n  rate-constant: [{a}, 0, 2D3 K]\n");
         let file = parse(Path::new("a.yaml"), &text).unwrap();
-        file.reactions[0].statement.rate.clone()
+        file.reactions[0].statement.rate
     };
     assert_eq!(factor("1.5D+13"), factor("1.5e13"));
 }
