@@ -7,12 +7,15 @@ mod gallery;
 mod gas_error;
 mod headers;
 mod json;
+mod measure;
+mod openfoam;
 mod packages;
 mod parcels;
 mod python;
 mod runs;
 mod sources;
 mod steps;
+mod stock;
 mod table;
 mod tasks;
 mod workspace;
@@ -52,7 +55,11 @@ usage: cargo xtask TASK
         [CASE …]          OpenFOAM's own solvers: cavity, taylor-green, heated-cavity,
                           hot-duct, five-species
         [--no-build]      with the programs that were built last
-  bench parcels           what parcels cost by phase, and beside OpenFOAM's own MPPICFoam
+  bench parcels           what parcels cost by phase
+        [--no-build]      with the programs that were built last
+  bench stock             a simulated second beside programs that are in use, on one core: DPMFoam,
+        [TABLE …]         MPPICFoam, LIGGGHTS and pimpleFoam: beads, fluidised, parcels,
+                          parcels-fine, particles, gas
         [--no-build]      with the programs that were built last
   bench python-overhead   processor time of runs from Python beyond that of `calcine run`, with
         [ROUNDS [CASE …]] the same bits: 5 rounds of moving-bed by default; KEY=VALUE changes it
@@ -112,6 +119,7 @@ enum Task {
     Gallery(gallery::GalleryChoice),
     Bench(bench::Choice),
     GasError(gas_error::ErrorChoice),
+    Stock(stock::StockChoice),
     /// Whether to measure the programs that were built last.
     Parcels {
         built: bool,
@@ -153,6 +161,10 @@ fn read(words: &[OsString]) -> Option<Task> {
             [word] if word == "--no-build" => Some(Task::Parcels { built: true }),
             _ => None,
         },
+        "bench" if rest.first().is_some_and(|word| word == "stock") => {
+            let words = rest[1..].iter().map(|word| word.to_str());
+            stock::StockChoice::read(words).map(Task::Stock)
+        }
         "bench" if rest.first().is_some_and(|word| word == "python-overhead") => {
             let rounds = rest.get(1).map(|word| word.to_str()?.parse::<u32>().ok());
             rounds
@@ -248,6 +260,7 @@ fn perform(task: Task) -> TaskResult<()> {
         Task::Gallery(choice) => gallery::run(&workspace, &choice),
         Task::Bench(choice) => bench::run(&workspace, &choice),
         Task::GasError(choice) => gas_error::run(&workspace, &choice),
+        Task::Stock(choice) => stock::run(&workspace, &choice),
         Task::Parcels { built } => parcels::run(&workspace, built),
         Task::PythonOverhead(words) => python::overhead(&workspace, &words),
         Task::Program { name, needs, words } => tasks::program(&workspace, name, needs, &words),

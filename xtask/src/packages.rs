@@ -20,6 +20,8 @@ pub struct Needs {
     pub tests: bool,
     /// The Python package, and an environment for its tests.
     pub python: bool,
+    /// OpenFOAM's tutorials, which a benchmark runs.
+    pub examples: bool,
 }
 
 /// Packages with others that have the same: ParaView's Python has VTK, and conflicts with the package of VTK's.
@@ -33,14 +35,16 @@ impl Needs {
         mpi: false,
         tests: false,
         python: false,
+        examples: false,
     };
-    /// Everything.
+    /// Everything that runs and tests need.
     pub const ALL: Self = Self {
         openfoam: true,
         liggghts: true,
         mpi: true,
         tests: true,
         python: true,
+        examples: false,
     };
 
     /// Names of Debian's packages, each once.
@@ -79,6 +83,7 @@ impl Needs {
             &["g++", "python3-vtk9", "python3-h5py", "python3-jsonschema"],
         );
         add(self.python, &["python3-venv"]);
+        add(self.examples, &["openfoam-examples"]);
         names
     }
 }

@@ -6,9 +6,9 @@ use std::process::Command;
 
 use super::case::{CoupledGas, ErrorCase, ErrorQuantity, Resolution};
 use super::field::{self, MeanField};
-use super::measure::{Cost, measured};
 use super::start;
 use crate::json::Json;
+use crate::measure::{Cost, measured};
 use crate::steps::{Stop, TaskResult, quietly};
 
 /// What a run gave.

@@ -127,7 +127,7 @@ pub fn of_calcine(path: &Path, name: &str, counts: [usize; 2]) -> TaskResult<Mea
 }
 
 /// A raw appended array of 64-bit numbers by its name.
-fn appended(bytes: &[u8], name: &str) -> Option<Vec<f64>> {
+pub fn appended(bytes: &[u8], name: &str) -> Option<Vec<f64>> {
     let mark: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
     let begin = bytes
         .windows(mark.len())

@@ -3,7 +3,7 @@
 use super::case::{ErrorCase, Resolution};
 use super::field::MeanField;
 use super::front::{Front, Point, TimeAt, levels};
-use super::measure::Cost;
+use crate::measure::Cost;
 use crate::table::{Table, short};
 
 /// What one run gave.

@@ -1,16 +1,13 @@
 //! Runs of OpenFOAM's own solvers.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use super::case::{ErrorCase, ErrorQuantity, Resolution};
 use super::field::{self, MeanField};
-use super::measure::{Cost, measured};
-use crate::steps::{Stop, TaskResult, quietly};
-
-/// Where Debian's OpenFOAM finds its own dictionaries.
-const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
+use crate::measure::{Cost, measured};
+use crate::openfoam::{self, copy, last_time, write};
+use crate::steps::{TaskResult, quietly};
 
 /// How a solver steps in time.
 #[derive(Clone, Copy, Debug)]
@@ -53,14 +50,7 @@ pub fn run(
         start.write_openfoam(&folder.join("0"), [nx, ny], ("empty", true))?;
     }
     let log = folder.join("log.preparation");
-    let tool = |words: &[&str]| {
-        let mut command = Command::new(words[0]);
-        command
-            .args(&words[1..])
-            .current_dir(folder)
-            .env(PROJECT.0, PROJECT.1);
-        command
-    };
+    let tool = |words: &[&str]| openfoam::tool(folder, words);
     quietly(&mut tool(&["blockMesh"]), &log)?;
     if folder.join("system/topoSetDict").exists() {
         quietly(&mut tool(&["topoSet"]), &log)?;
@@ -104,59 +94,4 @@ fn decomposition(ranks: usize) -> String {
         "FoamFile {{ version 2.0; format ascii; class dictionary; object decomposeParDict; }}\n\
          numberOfSubdomains {ranks};\nmethod simple;\nsimpleCoeffs {{ n ({ranks} 1 1); delta 0.001; }}\n"
     )
-}
-
-/// The folder of the latest time.
-fn last_time(folder: &Path) -> TaskResult<PathBuf> {
-    let entries = fs::read_dir(folder).map_err(|cause| Stop::io(folder, &cause))?;
-    let times = entries.flatten().filter_map(|entry| {
-        let time: f64 = entry.file_name().to_str()?.parse().ok()?;
-        Some((time, entry.path()))
-    });
-    let last = times.max_by(|one, other| one.0.total_cmp(&other.0));
-    let last = last.filter(|(time, _)| *time > 0.0);
-    last.map(|(_, path)| path)
-        .ok_or_else(|| Stop(format!("{}: no results", folder.display())))
-}
-
-fn write(path: &Path, text: &str) -> TaskResult<()> {
-    fs::write(path, text).map_err(|cause| Stop::io(path, &cause))
-}
-
-/// Copies a folder with all that is in it.
-pub fn copy(from: &Path, to: &Path) -> TaskResult<()> {
-    fs::create_dir_all(to).map_err(|cause| Stop::io(to, &cause))?;
-    for entry in fs::read_dir(from)
-        .map_err(|cause| Stop::io(from, &cause))?
-        .flatten()
-    {
-        let (path, to) = (entry.path(), to.join(entry.file_name()));
-        if path.is_dir() {
-            copy(&path, &to)?;
-        } else {
-            fs::copy(&path, &to).map_err(|cause| Stop::io(&path, &cause))?;
-        }
-    }
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_latest_time_is_found_by_its_number() {
-        let folder = std::env::temp_dir().join(format!("xtask times {}", std::process::id()));
-        for name in ["0", "9.5", "10", "constant"] {
-            fs::create_dir_all(folder.join(name)).unwrap();
-        }
-        let last = last_time(&folder).unwrap();
-        for name in ["9.5", "10"] {
-            fs::remove_dir(folder.join(name)).unwrap();
-        }
-        let none = last_time(&folder);
-        fs::remove_dir_all(&folder).unwrap();
-        assert_eq!(last, folder.join("10"));
-        assert!(none.is_err());
-    }
 }
