@@ -19,9 +19,10 @@ use calcine_wire::{
 
 use crate::drag::{self, DRAG};
 use crate::error::HostError;
-use crate::library::{self, Liggghts};
+use crate::library::{self, Liggghts, StepHook};
 use crate::parent::ParentCarrier;
 use crate::population_update::PopulationUpdate;
+use crate::pushed_force::{self, PUSH};
 use crate::rank_particles::{RankParticles, WEIGHT};
 
 /// Ticks of the wire's clocks in one second.
@@ -34,8 +35,6 @@ const RESTART: &str = "liggghts.restart";
 const GROUPS: &str = "group calcine_";
 /// How the line of a script begins that makes the group of particles that are held.
 const HELD: &str = "group calcine_held type ";
-/// The fix that holds the pushed forces; the script of a moving bed makes it.
-const PUSH: &str = "calcine_push";
 /// What a wall's line of the script has where its forces are to be counted; LIGGGHTS keeps them by particle
 /// in a fix named after the wall's.
 const COUNTED: (&str, &str) = (" store_force yes", "force_");
@@ -77,6 +76,8 @@ pub struct Host {
     frozen: bool,
     /// Populations that are held in a bed that moves.
     held: Vec<u64>,
+    /// Has the pushed forces act; nothing where the whole bed is held.
+    acting: Option<StepHook>,
 }
 
 impl Host {
@@ -106,6 +107,7 @@ impl Host {
             moving_drag: false,
             frozen: false,
             held: Vec::new(),
+            acting: None,
         };
         let restart = host.start.restart.clone();
         host.set_up(restart.as_deref())?;
@@ -238,10 +240,13 @@ impl Host {
         if restart.is_some() {
             self.make_kept();
         }
-        self.liggghts.command("run 0");
         self.moving_drag = self.has_fix(DRAG)?;
         self.frozen = !self.has_fix(PUSH)?;
         self.held = held(&self.script()?);
+        if !self.frozen && self.acting.is_none() {
+            self.acting = Some(pushed_force::act(&mut self.liggghts, &self.held));
+        }
+        self.liggghts.command("run 0");
         drag::forget(&mut self.liggghts);
         if restart.is_some() {
             self.take_kept()?;

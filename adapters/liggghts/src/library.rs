@@ -7,7 +7,7 @@
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use calcine_wire::{Header, Link, MessageKind, SolverFailure};
 
@@ -156,28 +156,31 @@ struct Handle(*mut c_void);
 // SAFETY: LIGGGHTS is used by one thread, that which runs its commands and from which it calls.
 unsafe impl Send for Handle {}
 
-/// Work at each step. Taken out while it is done.
-static HOOK: Mutex<Option<(Handle, StepWork)>> = Mutex::new(None);
+/// Work at each step with its number, in the order in which it came. Taken out while it is done.
+static HOOKS: Mutex<Vec<(u64, Handle, StepWork)>> = Mutex::new(Vec::new());
 
 /// Keeps the work at each step alive.
-pub struct StepHook(());
+pub struct StepHook(u64);
 
 impl Drop for StepHook {
     fn drop(&mut self) {
-        *HOOK.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        hooks().retain(|(number, ..)| *number != self.0);
     }
 }
 
-/// `FixExternal::post_force(step)`, of the fix that stands last in the script: it is called at each step when all forces
-/// are there, and once with LIGGGHTS' setup.
+fn hooks() -> MutexGuard<'static, Vec<(u64, Handle, StepWork)>> {
+    HOOKS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// `FixExternal::post_force(step)`, of the fix that stands last in the script: it is called at each step when all of the script's
+/// forces are there, and once with LIGGGHTS' setup.
 #[unsafe(no_mangle)]
 extern "C" fn _ZN9LAMMPS_NS11FixExternal10post_forceEi(_fix: *mut c_void, _: c_int) {
-    let taken = HOOK.lock().unwrap_or_else(PoisonError::into_inner).take();
-    let Some((handle, mut work)) = taken else {
-        return;
-    };
-    work(&mut Liggghts { handle: handle.0 });
-    *HOOK.lock().unwrap_or_else(PoisonError::into_inner) = Some((handle, work));
+    let mut taken = std::mem::take(&mut *hooks());
+    for (_, handle, work) in &mut taken {
+        work(&mut Liggghts { handle: handle.0 });
+    }
+    *hooks() = taken;
 }
 
 /// Velocities and forces of this rank's particles with the numbers of a fix, in LIGGGHTS' order, interleaved.
@@ -384,9 +387,10 @@ impl Liggghts {
     /// Has a function called at each step from now on, when all other forces of the step are there, for as long as what is
     /// given back lives.
     pub fn at_each_step(&mut self, work: StepWork) -> StepHook {
-        let handle = Handle(self.handle);
-        *HOOK.lock().unwrap_or_else(PoisonError::into_inner) = Some((handle, work));
-        StepHook(())
+        let mut hooks = hooks();
+        let number = hooks.last().map_or(0, |(last, ..)| last + 1);
+        hooks.push((number, Handle(self.handle), work));
+        StepHook(number)
     }
 
     /// Scalars of a `fix property/atom`, one for each of this rank's particles; `None` where there is no such fix.

@@ -11,6 +11,7 @@ mod library;
 #[allow(unsafe_code)]
 mod parent;
 mod population_update;
+mod pushed_force;
 mod rank_particles;
 
 use std::path::PathBuf;

@@ -30,12 +30,12 @@ const WEIGHTS: (&str, &str) = (
     "fix calcine_weight all property/atom calcine_weight scalar yes no no 1.\n",
 );
 
-/// What has LIGGGHTS keep eleven numbers for the drag of each particle, and call the host at each step when all forces are
-/// there: the fix must stand last.
+/// What has LIGGGHTS keep eleven numbers for the drag of each particle.
 const DRAG: &str = "\
 fix calcine_drag all property/atom calcine_drag vector no no no 0. 0. 0. 0. 0. 0. 0. 0. 0. 0. 0.
-fix calcine_drag_step all external pf/array 1
 ";
+/// Where LIGGGHTS calls the host at each step, which adds to the forces: behind all others.
+const EACH_STEP: &str = "fix calcine_each_step all external pf/array 1\n";
 
 /// What the inputs are made from.
 #[derive(Clone, Copy, Debug)]
@@ -151,6 +151,10 @@ impl Inputs<'_> {
         if self.moving_drag {
             script.push('\n');
             script.push_str(DRAG);
+        }
+        if self.moving_drag || matches!(self.setup.motion, Motion::Free(_)) {
+            script.push('\n');
+            script.push_str(EACH_STEP);
         }
         Ok(script)
     }

@@ -129,14 +129,9 @@ pub fn gravity(contacts: &Contacts) -> String {
     format!("fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}\n")
 }
 
-/// The force of the gas, which the host writes into the fix `calcine_push`.
+/// The force of the gas, which the host writes into the fix `calcine_push` and adds at each step.
 pub fn push() -> String {
-    "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
-     variable calcine_x atom f_calcine_push[1]\n\
-     variable calcine_y atom f_calcine_push[2]\n\
-     variable calcine_z atom f_calcine_push[3]\n\
-     fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n"
-        .into()
+    "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n".into()
 }
 
 /// What is held stays, what is free moves.

@@ -574,7 +574,7 @@ fn check(commands: &[Command]) -> Vec<ScriptTemplateError> {
                 found.push(command.refuse(rule, "write a `[[feeds]]`"));
             }
             ["fix", _, _, "external", ..] => {
-                let rule = "by this fix the host has drag follow the particles";
+                let rule = "by this fix the host adds the force of the gas at each step";
                 found.push(command.refuse(rule, "leave the line out"));
             }
             [first, ..] => {

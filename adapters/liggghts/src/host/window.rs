@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use calcine_wire::{Header, MessageKind, WireError};
 
-use super::{Host, PUSH, TICKS, UNCOUNTED, on_link};
+use super::{Host, TICKS, UNCOUNTED, on_link};
 use crate::drag::{self, PushedDrag};
 use crate::error::HostError;
 use crate::library::StepHook;
+use crate::pushed_force::PUSH;
 
 impl Host {
     /// Advances one window and answers with state and impulses.
