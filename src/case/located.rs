@@ -24,7 +24,7 @@ pub fn located(case: &Case, key: &str, error: &dyn fmt::Display) -> CaseErrors {
         span: span.unwrap_or(0..0),
         line: 0,
     };
-    CaseErrors::new(&case.path, text, vec![problem])
+    CaseErrors::new(&case.path, text, vec![problem]).numbered(case.lines.clone())
 }
 
 /// Where the value of a dotted key stands, or the nearest one above it.

@@ -119,6 +119,9 @@ pub fn parse_with(
     case.files = input_files::sums(&case);
     case.hash = input_files::extended(case.hash, &case.files);
     case.changes = changes;
+    if !set.is_empty() {
+        case.lines = set::lines(path, text, set);
+    }
     Ok(case)
 }
 

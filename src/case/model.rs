@@ -53,6 +53,8 @@ pub struct Case {
     pub effective: String,
     /// SHA-256 (hex) of what is in each file that the case reads, by the key that names it.
     pub files: BTreeMap<String, String>,
+    /// The line in the file, from 1, of each line of the effective text; empty where they are the same.
+    pub lines: Vec<usize>,
     /// What `--set` changed: key, new and old value.
     pub changes: Vec<String>,
     /// What of the case is likely not meant, or out of range before anything runs, in words; empty until mesh and particles

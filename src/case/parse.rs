@@ -89,7 +89,10 @@ pub(super) fn parse_as<C>(
             let help = "report it: this is a fault of Calcine, not of the case";
             Err(one(path, &effective, 0..0, message, help))
         }
-        _ => Err(CaseErrors::new(path, &effective, problems)),
+        _ => {
+            let lines = set::lines(path, text, set);
+            Err(CaseErrors::new(path, &effective, problems).numbered(lines))
+        }
     }
 }
 

@@ -5,7 +5,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use miette::{
-    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode,
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError,
+    MietteSpanContents, NamedSource, SourceCode, SourceSpan, SpanContents,
 };
 
 /// One error of a case file.
@@ -17,7 +18,7 @@ pub struct Problem {
     pub help: String,
     /// Bytes of the text that it is about.
     pub span: Range<usize>,
-    /// Line in the text, from 1.
+    /// Line in the file, from 1.
     pub line: usize,
 }
 
@@ -25,8 +26,51 @@ pub struct Problem {
 #[derive(Clone, Debug)]
 pub struct CaseErrors {
     path: PathBuf,
-    source: NamedSource<String>,
+    source: NumberedSource,
     problems: Vec<Problem>,
+}
+
+/// A text with `--set` applied, whose lines are shown by their numbers in the file.
+#[derive(Clone, Debug)]
+struct NumberedSource {
+    text: NamedSource<String>,
+    /// The line in the file, from 1, of each line of the text; empty where they are the same.
+    lines: Vec<usize>,
+}
+
+impl NumberedSource {
+    /// The line in the file, from 1, of one of the text, from 1.
+    fn line(&self, line: usize) -> usize {
+        self.lines.get(line - 1).copied().unwrap_or(line)
+    }
+}
+
+impl SourceCode for NumberedSource {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let found = self.text.read_span(span, before, after)?;
+        let line = line_of(self.text.inner(), span.offset());
+        let moved = self.line(line) as isize - line as isize;
+        let name = found.name().unwrap_or_default().to_owned();
+        Ok(Box::new(MietteSpanContents::new_named(
+            name,
+            found.data(),
+            *found.span(),
+            found.line().saturating_add_signed(moved),
+            found.column(),
+            found.line_count(),
+        )))
+    }
+}
+
+/// The line, from 1, of a byte.
+fn line_of(text: &str, byte: usize) -> usize {
+    let before = &text.as_bytes()[..byte.min(text.len())];
+    1 + before.iter().filter(|&&b| b == b'\n').count()
 }
 
 impl CaseErrors {
@@ -34,18 +78,27 @@ impl CaseErrors {
         for problem in &mut problems {
             problem.span.end = problem.span.end.min(text.len());
             problem.span.start = problem.span.start.min(problem.span.end);
-            problem.line = 1 + text.as_bytes()[..problem.span.start]
-                .iter()
-                .filter(|&&b| b == b'\n')
-                .count();
+            problem.line = line_of(text, problem.span.start);
         }
         problems.sort_by_key(|problem| problem.span.start);
-        let source = NamedSource::new(path.display().to_string(), text.to_owned());
+        let text = NamedSource::new(path.display().to_string(), text.to_owned());
         Self {
             path: path.to_owned(),
-            source,
+            source: NumberedSource {
+                text,
+                lines: Vec::new(),
+            },
             problems,
         }
+    }
+
+    /// The same with the line in the file, from 1, of each line of the text.
+    pub(super) fn numbered(mut self, lines: Vec<usize>) -> Self {
+        self.source.lines = lines;
+        for problem in &mut self.problems {
+            problem.line = self.source.line(problem.line);
+        }
+        self
     }
 
     /// The errors in the order of their places.
@@ -98,7 +151,7 @@ impl CaseErrors {
 impl CaseErrors {
     /// Length in bytes of the longest line that a problem is about.
     fn longest_line(&self, problem: &Problem) -> usize {
-        let text = self.source.inner().as_bytes();
+        let text = self.source.text.inner().as_bytes();
         let end_of_line = |from: usize| {
             let rest = text[from..].iter().position(|&byte| byte == b'\n');
             rest.map_or(text.len(), |length| from + length)
@@ -132,7 +185,7 @@ impl std::error::Error for CaseErrors {}
 /// One problem with its source, for miette.
 struct Shown<'a> {
     problem: &'a Problem,
-    source: &'a NamedSource<String>,
+    source: &'a NumberedSource,
 }
 
 impl fmt::Debug for Shown<'_> {

@@ -107,6 +107,36 @@ pub(super) fn apply(
     Ok((document.to_string(), changes))
 }
 
+/// The line in the file, from 1, of each line of the text with `--set` applied: of a line that is new, that of the one before.
+pub(super) fn lines(path: &Path, text: &str, set: &[String]) -> Vec<usize> {
+    let mut before = text.to_owned();
+    let mut lines: Vec<usize> = (1..=text.lines().count()).collect();
+    for last in 1..=set.len() {
+        // What was applied whole can be applied in part.
+        let Ok((after, _)) = apply(path, text, &set[..last]) else {
+            break;
+        };
+        let [old, new] = [&before, &after].map(|text| text.lines().collect::<Vec<_>>());
+        let same = |pairs: &mut dyn Iterator<Item = (&&str, &&str)>| {
+            pairs.take_while(|(old, new)| old == new).count()
+        };
+        let most = old.len().min(new.len());
+        let head = same(&mut old.iter().zip(&new));
+        let tail = same(&mut old.iter().rev().zip(new.iter().rev())).min(most - head);
+        let inner = lines[head..old.len() - tail].to_vec();
+        let previous = head.checked_sub(1).map_or(1, |one| lines[one]);
+        let count = new.len() - head - tail;
+        let changed = (0..count).map(|k| {
+            let last = inner.last().copied().unwrap_or(previous);
+            inner.get(k).copied().unwrap_or(last)
+        });
+        let changed: Vec<usize> = changed.collect();
+        lines.splice(head..old.len() - tail, changed);
+        before = after;
+    }
+    lines
+}
+
 /// The names of a dotted key; one in quotes may have dots of its own, as in `parameters."one.activation_energy".low`.
 fn parts(key: &str) -> Vec<&str> {
     let mut quote = None;
@@ -218,7 +248,23 @@ fn replace(item: &mut Item, value: Value) {
 
 #[cfg(test)]
 mod tests {
-    use super::parts;
+    use std::path::Path;
+
+    use super::{lines, parts};
+
+    #[test]
+    fn lines_of_the_file_keep_their_numbers_where_set_adds_some() {
+        let text = "[a]\nx = 1\n[b]\ny = [\n1,\n2]\nz = 3\n";
+        let of = |set: &[&str]| {
+            let set: Vec<String> = set.iter().map(|&one| one.to_owned()).collect();
+            lines(Path::new("case.toml"), text, &set)
+        };
+        assert_eq!(of(&[]), [1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(of(&["a.x=2", "b.z=4"]), [1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(of(&["a.new=2"]), [1, 2, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(of(&["a.new=2", "a.other=2"]), [1, 2, 2, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(of(&["b.y=4"]), [1, 2, 3, 4, 7]);
+    }
 
     #[test]
     fn dots_between_quotes_part_no_names() {

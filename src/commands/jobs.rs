@@ -4,7 +4,7 @@ use std::io::{ErrorKind, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use calcine_coupler::supervisor::Interrupts;
 use rustix::process::{Pid, Signal, kill_process};
@@ -13,11 +13,12 @@ use serde::{Deserialize, Serialize};
 use super::failure::Failure;
 use super::signals::SignalThread;
 use crate::exit;
-use crate::results::{ResultsError, SUMMARY, files};
+use crate::results::{ResultsError, STATUS, SUMMARY, files};
 use crate::simulation::begun_before;
 
-/// How often runs are looked at.
+/// How often runs are looked at, and how often is told how far those are that go on side by side.
 const LOOK: Duration = Duration::from_millis(20);
+const TELL: Duration = Duration::from_secs(15);
 
 /// One run.
 #[derive(Clone, Debug)]
@@ -32,6 +33,13 @@ pub(super) struct Job {
 const FAILED: &str = "failed";
 
 impl Job {
+    /// How much of its process time it has done, as its results tell so far.
+    pub(super) fn fraction_done(&self) -> Option<f64> {
+        let text = std::fs::read_to_string(self.folder.join(STATUS)).ok()?;
+        let status: serde_json::Value = serde_json::from_str(&text).ok()?;
+        status.get("fraction_done")?.as_f64()
+    }
+
     /// The file that says how it failed.
     fn record(&self) -> Option<PathBuf> {
         let name = self.folder.file_name()?.to_str()?;
@@ -91,6 +99,16 @@ impl JobEnd {
     }
 }
 
+/// What is told of runs as they go on; runs by their places in the list.
+pub(super) enum JobEvent<'a> {
+    /// One begins or goes on.
+    Begins(usize),
+    /// So many have ended, and these are under way side by side.
+    UnderWay(usize, &'a [usize]),
+    /// One has ended.
+    Ended(usize, &'a JobEnd),
+}
+
 /// How runs are made.
 #[derive(Debug)]
 pub(super) struct Jobs<'a> {
@@ -113,18 +131,19 @@ struct Running {
 }
 
 impl Jobs<'_> {
-    /// Follows all runs to their ends, and tells of each as it ends. One that came to its end before is kept, one that was begun goes on,
+    /// Follows all runs to their ends, and tells of them. One that came to its end before is kept, one that was begun goes on,
     /// and one that fails ends no other. An interrupt has each leave a checkpoint, and is an error.
     pub(super) fn follow(
         &self,
         jobs: &[Job],
-        mut ended: impl FnMut(usize, &JobEnd) -> Result<(), Failure>,
+        mut told: impl FnMut(JobEvent<'_>) -> Result<(), Failure>,
     ) -> Result<Vec<JobEnd>, Failure> {
         let interrupts = Interrupts::default();
         let _signals = SignalThread::start(&interrupts, None)?;
         let mut ends: Vec<Option<JobEnd>> = vec![None; jobs.len()];
         let mut running: Vec<Running> = Vec::new();
         let (mut next, mut passed_on) = (0, 0);
+        let mut last_told = Instant::now();
         while next < jobs.len() || !running.is_empty() {
             let count = interrupts.count();
             if count > passed_on {
@@ -135,6 +154,7 @@ impl Jobs<'_> {
                 break;
             }
             while count == 0 && running.len() < self.at_once && next < jobs.len() {
+                told(JobEvent::Begins(next))?;
                 running.push(self.start(next, &jobs[next])?);
                 next += 1;
             }
@@ -156,11 +176,17 @@ impl Jobs<'_> {
                         let kept = jobs[one.place].keep(&end);
                         kept.map_err(|error| Failure::told(exit::OTHER, &error))?;
                     }
-                    ended(one.place, &end)?;
+                    told(JobEvent::Ended(one.place, &end))?;
                 }
                 ends[one.place] = Some(end);
             }
             running = going;
+            if self.at_once > 1 && !running.is_empty() && last_told.elapsed() >= TELL {
+                last_told = Instant::now();
+                let places: Vec<usize> = running.iter().map(|one| one.place).collect();
+                let ended = ends.iter().flatten().count();
+                told(JobEvent::UnderWay(ended, &places))?;
+            }
             thread::sleep(LOOK);
         }
         let whole = ends
@@ -207,12 +233,14 @@ impl Jobs<'_> {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().map_err(|cause| unheard(&cause))?;
         let stderr = child.stderr.take();
-        let told = stderr.map(|stderr| thread::spawn(move || listen(stderr, alone)));
+        // Of which run it speaks is told where it begins, or before it is shown.
+        let shown = alone && !self.quiet;
+        let told = stderr.map(|stderr| thread::spawn(move || listen(stderr, shown)));
         Ok(Running {
             place,
             child,
             told,
-            shown: alone,
+            shown: shown || bar,
         })
     }
 }

@@ -8,7 +8,7 @@ use clap::Args;
 use super::console::{printed, say};
 use super::failure::Failure;
 use super::inputs::{own_or_new, read_case, results_folder};
-use super::jobs::{Job, JobEnd, Jobs};
+use super::jobs::{Job, JobEnd, JobEvent, Jobs};
 use super::sweep_axes::{axes, combine, jobs, keys, values};
 use super::sweep_table::{SweepTable, TABLE};
 use crate::assembly::{GasBackend, ParticleBackend};
@@ -204,13 +204,28 @@ impl Arguments {
                     self.jobs
                 ));
             }
-            let ends = runs.follow(chosen, |place, end| {
-                let settings = chosen[place].settings.join("  ");
-                say(format_args!("{settings}  {}", ending(end.code)))?;
-                if !end.shown {
-                    tell(&end.told);
+            let ends = runs.follow(chosen, |event| {
+                match event {
+                    JobEvent::Begins(_) | JobEvent::UnderWay(..) if self.quiet => {}
+                    JobEvent::Begins(place) => {
+                        let settings = chosen[place].settings.join("  ");
+                        let number = self.only.map_or(place + 1, |number| number as usize);
+                        tell_line(format_args!("run {number} of {}: {settings}", jobs.len()));
+                    }
+                    JobEvent::UnderWay(ended, places) => {
+                        let under_way = places.iter().map(|&place| &chosen[place]);
+                        tell_line(progress(ended, chosen.len(), under_way));
+                    }
+                    JobEvent::Ended(place, end) => {
+                        let settings = chosen[place].settings.join("  ");
+                        say(format_args!("{settings}  {}", ending(end.code)))?;
+                        if !end.shown && !end.told.trim().is_empty() {
+                            tell_line(format_args!("{settings} says:"));
+                            tell(&end.told);
+                        }
+                        gathered = sweep.gather()?;
+                    }
                 }
-                gathered = sweep.gather()?;
                 Ok(())
             })?;
             if self.only.is_some() {
@@ -328,6 +343,19 @@ fn exit_code<'e>(mut ends: impl Iterator<Item = &'e JobEnd> + Clone) -> u8 {
         None if outside => exit::OUTSIDE_BANDS,
         None => exit::OK,
     }
+}
+
+/// How far runs are that go on side by side.
+fn progress<'j>(ended: usize, all: usize, under_way: impl Iterator<Item = &'j Job>) -> String {
+    let each = under_way.map(|job| {
+        let settings = job.settings.join("  ");
+        match job.fraction_done() {
+            Some(done) => format!("{settings}: {:.0} %", 100.0 * done),
+            None => format!("{settings}: begins"),
+        }
+    });
+    let each: Vec<String> = each.collect();
+    format!("{ended} of {all} have ended; under way: {}", each.join("; "))
 }
 
 /// How a run ended, in words.
@@ -505,4 +533,26 @@ fn partner<'a>(
         let settings = other.job.settings.iter().map(String::as_str);
         settings.eq(wanted.iter().copied())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_of_runs_side_by_side_is_told_by_their_settings() {
+        let folder = std::env::temp_dir().join(format!("calcine sweep {}", std::process::id()));
+        let job = |name: &str| Job {
+            settings: vec![format!("time.acceleration={name}")],
+            folder: folder.join(name),
+        };
+        let jobs = [job("50"), job("200")];
+        std::fs::create_dir_all(&jobs[0].folder).unwrap();
+        let status = jobs[0].folder.join("status.json");
+        std::fs::write(status, r#"{"state": "running", "fraction_done": 0.426}"#).unwrap();
+        let text = progress(1, 8, jobs.iter());
+        std::fs::remove_dir_all(&folder).unwrap();
+        let wanted = "1 of 8 have ended; under way: time.acceleration=50: 43 %; time.acceleration=200: begins";
+        assert_eq!(text, wanted);
+    }
 }

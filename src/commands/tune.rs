@@ -240,7 +240,12 @@ fn closing(case: &TuningCase, found: &TuningOutcome) -> String {
     if let Some(law) = found.laws.get(found.chosen)
         && found.laws.len() > 1
     {
-        text += &format!("law {} of {} compared", law.law, found.laws.len());
+        text += &format!(
+            "law {} of {} compared (Akaike's criterion {:.1})",
+            law.law,
+            found.laws.len(),
+            law.criterion
+        );
         let better = found
             .laws
             .iter()

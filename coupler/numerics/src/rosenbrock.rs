@@ -16,6 +16,8 @@ const SHRINK: f64 = 0.1;
 const GROW: f64 = 6.0;
 /// How much a first step, which is a guess, may shrink at once.
 const FIRST_SHRINK: f64 = 1e-3;
+/// Error, as a share of the tolerance, with which a step of the quick method over a whole span is taken.
+const QUICK: f64 = 0.1;
 
 /// An autonomous stiff system: unknowns y with y' = f(y; p), and integrals z' = g(y; p) that no rate depends on (they
 /// cost no linear algebra). The parameters p are those by which the tangent is taken.
@@ -95,12 +97,17 @@ pub struct SystemDerivatives {
 /// corrects in a way that conserves what it has to ([`StiffSystem::correct`]). Nothing is clipped.
 ///
 /// *Steps.* The first is the whole span, or what the system says ([`StiffSystem::first_step`]); then Gustafsson's predictive control.
+/// Where the first step is the whole span, a method of fewer stages may try it before ([`Rosenbrock::quickly`]).
 ///
 /// Sources: Hairer and Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), sections IV.7 and IV.8,
 /// doi 10.1007/978-3-642-05221-7; Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, doi 10.1145/198429.198437.
 #[derive(Clone, Debug)]
 pub struct Rosenbrock<L> {
     tableau: &'static RosenbrockTableau,
+    /// The method that tries a whole span in one step before.
+    quick: Option<&'static RosenbrockTableau>,
+    /// That of the step at hand.
+    current: &'static RosenbrockTableau,
     algebra: L,
     derivatives: SystemDerivatives,
     width: usize,
@@ -128,6 +135,8 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
     pub fn new(tableau: &'static RosenbrockTableau, algebra: L) -> Self {
         Self {
             tableau,
+            quick: None,
+            current: tableau,
             algebra,
             derivatives: SystemDerivatives::default(),
             width: 0,
@@ -143,6 +152,13 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
             direct: Vec::new(),
             first_step: 0.0,
         }
+    }
+
+    /// The same, with another method of no more stages that tries to take each span in one step, and does where its error is far
+    /// below what is tolerated.
+    pub fn quickly(mut self, quick: &'static RosenbrockTableau) -> Self {
+        self.quick = Some(quick);
+        self
     }
 
     /// The linear algebra, to change its order between integrations.
@@ -189,6 +205,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         // Length and error of the last accepted step.
         let mut before: Option<(f64, f64)> = None;
         let order = f64::from(self.tableau.error_order);
+        self.current = self.tableau;
         let fail = |reached, cause, worst| IntegrationStalled {
             reached,
             span,
@@ -198,12 +215,22 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         self.differentiate(system, y)
             .map_err(|worst| fail(time, StallCause::NotFinite, worst))?;
         step = step.min(system.first_step(y, &self.start));
+        if let Some(quick) = self.quick.filter(|_| step >= span) {
+            self.current = quick;
+        }
         let mut last_rejected = false;
         while done.steps + done.rejected < accuracy.steps {
             let left = span - time;
             let ends = step >= 0.999 * left;
             step = if ends { left } else { step };
             let (error, place) = self.attempt(system, y, step, accuracy, &mut done.evaluations);
+            if !std::ptr::eq(self.current, self.tableau) {
+                let next = &self.next[..self.unknowns];
+                if !(error <= QUICK && system.admissible(y, next) >= 1.0) {
+                    self.current = self.tableau;
+                    continue;
+                }
+            }
             worst = place;
             let mut factor = SAFETY * error.max(1e-10).powf(-1.0 / order);
             let inside = if error <= 1.0 {
@@ -317,7 +344,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         accuracy: IntegrationAccuracy<'_>,
         evaluations: &mut usize,
     ) -> (f64, usize) {
-        let (n, width, tableau) = (self.unknowns, self.width, self.tableau);
+        let (n, width, tableau) = (self.unknowns, self.width, self.current);
         let (scaled, inverse) = (tableau.gamma * step, 1.0 / step);
         if !self
             .algebra
@@ -362,7 +389,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         let (n, width) = (self.unknowns, self.width);
         let errors = &mut self.rates;
         errors.fill(0.0);
-        for (stage, e) in self.stages.chunks_exact(width).zip(&self.tableau.e) {
+        for (stage, e) in self.stages.chunks_exact(width).zip(&self.current.e) {
             add(errors, *e, stage);
         }
         let (mut most, mut place) = (0.0, 0);
@@ -398,7 +425,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
 
     /// Moves the tangents over the step that was just accepted.
     fn follow_tangent(&mut self, parameters: usize, step: f64) {
-        let (n, width, tableau) = (self.unknowns, self.width, self.tableau);
+        let (n, width, tableau) = (self.unknowns, self.width, self.current);
         let (scaled, inverse) = (tableau.gamma * step, 1.0 / step);
         for p in 0..parameters {
             let slope = &mut self.tangent[p * width..(p + 1) * width];

@@ -223,6 +223,7 @@ pub(super) fn case(
         changes: Vec::new(),
         warnings: Vec::new(),
         effective: effective.into(),
+        lines: Vec::new(),
         time,
         mesh: mesh?,
         materials,

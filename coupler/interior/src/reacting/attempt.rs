@@ -65,7 +65,8 @@ pub struct ParticleWorkspace {
 impl Default for ParticleWorkspace {
     fn default() -> Self {
         Self {
-            method: Rosenbrock::new(&RosenbrockTableau::RODAS4, DenseMatrix::default()),
+            method: Rosenbrock::new(&RosenbrockTableau::RODAS4, DenseMatrix::default())
+                .quickly(&RosenbrockTableau::RODAS3),
             unknowns: Vec::new(),
             tolerance: Vec::new(),
             extents: Vec::new(),

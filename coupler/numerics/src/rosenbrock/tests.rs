@@ -176,6 +176,32 @@ fn errors_fall_with_the_order_of_each_method_in_unknowns_and_integrals() {
 }
 
 #[test]
+fn a_quick_method_takes_short_spans_and_leaves_long_ones_as_they_are() {
+    let follow = |span: f64, quick: bool| {
+        let mut method = method(&RosenbrockTableau::RODAS4, 3);
+        if quick {
+            method = method.quickly(&RosenbrockTableau::RODAS3);
+        }
+        let mut y = [1.0, 1.0, 0.0];
+        let accuracy = IntegrationAccuracy::absolute(&[1e-6; 4]);
+        let mut system = text!(3, 1, 1.5, nonlinear);
+        let done = method
+            .integrate(&mut system, &mut y, span, accuracy)
+            .unwrap();
+        (y, done, method.tangent(0).to_vec())
+    };
+    let (plain, quick) = (follow(1e-3, false), follow(1e-3, true));
+    assert_eq!([plain.1.evaluations, quick.1.evaluations], [5, 2]);
+    for (one, other) in plain.0.iter().zip(&quick.0).chain(plain.2.iter().zip(&quick.2)) {
+        assert!((one - other).abs() < 1e-7, "{plain:?} {quick:?}");
+    }
+    let (plain, quick) = (follow(1.0, false), follow(1.0, true));
+    assert!(plain.1.steps > 1);
+    assert_eq!((plain.0, plain.2), (quick.0, quick.2));
+    assert_eq!(plain.1.evaluations + 2, quick.1.evaluations);
+}
+
+#[test]
 fn robertson_s_stiff_problem_agrees_with_its_reference_solution_and_keeps_its_sum() {
     // At t = 40: Hairer and Wanner, IV.10.
     for (tableau, most) in BOTH.into_iter().zip([800, 240]) {

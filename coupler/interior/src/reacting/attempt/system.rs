@@ -315,8 +315,9 @@ impl StiffSystem for ParticleSystem<'_> {
         self.chemistry.directions().len() + 1
     }
 
+    /// Where slopes are not wanted those of the attempt before hold.
     fn direct(&self) -> bool {
-        true
+        self.guess.slopes
     }
 
     fn follows_tangent(&self) -> bool {
