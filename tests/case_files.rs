@@ -182,6 +182,24 @@ fn set_replaces_an_entry_of_a_list_and_refuses_what_is_no_table() {
     assert!(message.contains("`walls[0]"), "{message}");
 }
 
+#[test]
+fn errors_have_the_lines_of_the_file_where_set_adds_keys() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-column.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    let spoilt = text.replace("diameter = \"10 mm\"", "diameter = \"-5 mm\"");
+    let line = 1 + spoilt
+        .lines()
+        .position(|line| line.contains("-5 mm"))
+        .unwrap();
+    for settings in [&[][..], &["time.checkpoint={ every = \"5 s\" }".to_owned()]] {
+        let errors = parse(&path, &spoilt, settings).unwrap_err();
+        assert_eq!(errors.problems()[0].line, line, "{settings:?}");
+        let shown = errors.render();
+        assert!(shown.contains(&format!("column.toml:{line}:")), "{shown}");
+        assert!(shown.contains(&format!("{line} │ diameter = ")), "{shown}");
+    }
+}
+
 /// Each entry of the lists at the top of a case: the list, its length and the entry's place.
 fn plain_entries(path: &Path) -> Vec<(String, usize, usize)> {
     let text = std::fs::read_to_string(path).unwrap();

@@ -355,7 +355,10 @@ fn progress<'j>(ended: usize, all: usize, under_way: impl Iterator<Item = &'j Jo
         }
     });
     let each: Vec<String> = each.collect();
-    format!("{ended} of {all} have ended; under way: {}", each.join("; "))
+    format!(
+        "{ended} of {all} have ended; under way: {}",
+        each.join("; ")
+    )
 }
 
 /// How a run ended, in words.

@@ -59,6 +59,7 @@ pub fn case() -> Case {
         changes: Vec::new(),
         files: Default::default(),
         effective: "format = 1\n".into(),
+        lines: Vec::new(),
         time: TimeSpec {
             end: seconds(20.0),
             process_step: None,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::comparison::{Comparison, Contestant};
+use super::comparison::{Contestant, StockComparison};
 use super::programs::{CalcineRun, LOOSE, OpenFoamRun, Source, fresh};
 use crate::gas_error::appended;
 use crate::openfoam::write;
@@ -104,7 +104,7 @@ fn compared(
             }));
         }
     }
-    let comparison = Comparison {
+    let comparison = StockComparison {
         title,
         figure: "pressure drop, Pa",
         ends: ENDS,

@@ -37,7 +37,7 @@ impl<'a> Contestant<'a> {
 }
 
 /// What is measured of all contestants.
-pub struct Comparison {
+pub struct StockComparison {
     /// Heads of the first column and of the last, the mean figure between the ends.
     pub title: &'static str,
     pub figure: &'static str,
@@ -45,7 +45,7 @@ pub struct Comparison {
     pub ends: [f64; 2],
 }
 
-impl Comparison {
+impl StockComparison {
     /// Runs all contestants; the first is what the others are compared with.
     pub fn table(&self, contestants: &[Contestant<'_>]) -> TaskResult<Table> {
         let first = contestants.first().map_or("", |first| &first.name);
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn what_both_runs_have_does_not_count() {
-        let comparison = Comparison {
+        let comparison = StockComparison {
             title: "bed",
             figure: "drop, Pa",
             ends: [1.0, 3.0],

@@ -1,6 +1,6 @@
 //! Gas through a bed that does not move: pimpleFoam with a porous zone by Ergun's equation, and Calcine with the spheres.
 
-use super::comparison::{Comparison, Contestant};
+use super::comparison::{Contestant, StockComparison};
 use super::programs::{CalcineRun, LOOSE, OpenFoamRun, Source};
 use crate::steps::TaskResult;
 use crate::table::Table;
@@ -40,7 +40,7 @@ pub fn table(workspace: &Workspace) -> TaskResult<Table> {
             run.to(workspace, end)
         }));
     }
-    let comparison = Comparison {
+    let comparison = StockComparison {
         title: "fixed bed of 24 480 spheres in 8100 cells",
         figure: "pressure drop, Pa",
         ends: [2e-3, 22e-3],

@@ -1,6 +1,6 @@
 //! The tutorial MPPICFoam/Goldschmidt: 24 750 parcels in a flat bed, on its own cells and on those of DPMFoam's.
 
-use super::comparison::{Comparison, Contestant};
+use super::comparison::{Contestant, StockComparison};
 use super::programs::{CalcineRun, LOOSE, OpenFoamRun, Source};
 use crate::steps::TaskResult;
 use crate::table::Table;
@@ -80,7 +80,7 @@ fn table(workspace: &Workspace, title: &'static str, cells: [u32; 3]) -> TaskRes
             run.to(workspace, end)
         }));
     }
-    let comparison = Comparison {
+    let comparison = StockComparison {
         title,
         figure: "pressure drop, Pa",
         ends: [10e-3, 50e-3],

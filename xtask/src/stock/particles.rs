@@ -1,6 +1,6 @@
 //! The beads without gas: LIGGGHTS by itself, and Calcine with its native particles and with LIGGGHTS.
 
-use super::comparison::{Comparison, Contestant};
+use super::comparison::{Contestant, StockComparison};
 use super::programs::{CalcineRun, liggghts};
 use crate::steps::TaskResult;
 use crate::table::Table;
@@ -33,7 +33,7 @@ pub fn table(workspace: &Workspace) -> TaskResult<Table> {
         calcine("native"),
         calcine("liggghts"),
     ];
-    let comparison = Comparison {
+    let comparison = StockComparison {
         title: "24 750 beads that fall and settle",
         figure: "mean height, m",
         ends: [60e-3, 100e-3],

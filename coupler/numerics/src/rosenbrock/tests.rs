@@ -192,7 +192,12 @@ fn a_quick_method_takes_short_spans_and_leaves_long_ones_as_they_are() {
     };
     let (plain, quick) = (follow(1e-3, false), follow(1e-3, true));
     assert_eq!([plain.1.evaluations, quick.1.evaluations], [5, 2]);
-    for (one, other) in plain.0.iter().zip(&quick.0).chain(plain.2.iter().zip(&quick.2)) {
+    for (one, other) in plain
+        .0
+        .iter()
+        .zip(&quick.0)
+        .chain(plain.2.iter().zip(&quick.2))
+    {
         assert!((one - other).abs() < 1e-7, "{plain:?} {quick:?}");
     }
     let (plain, quick) = (follow(1.0, false), follow(1.0, true));
