@@ -30,7 +30,8 @@ pub struct CaseErrors {
     problems: Vec<Problem>,
 }
 
-/// A text with `--set` applied, whose lines are shown by their numbers in the file.
+/// A text with `--set` applied, whose lines are shown by their numbers in the file: exact of the line that is pointed at, and of those
+/// about it but for lines that `--set` adds among them.
 #[derive(Clone, Debug)]
 struct NumberedSource {
     text: NamedSource<String>,
@@ -41,7 +42,9 @@ struct NumberedSource {
 impl NumberedSource {
     /// The line in the file, from 1, of one of the text, from 1.
     fn line(&self, line: usize) -> usize {
-        self.lines.get(line - 1).copied().unwrap_or(line)
+        let beyond = |last: &usize| last + line - self.lines.len();
+        let known = self.lines.get(line - 1).copied();
+        known.unwrap_or_else(|| self.lines.last().map_or(line, beyond))
     }
 }
 

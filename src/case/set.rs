@@ -117,24 +117,66 @@ pub(super) fn lines(path: &Path, text: &str, set: &[String]) -> Vec<usize> {
             break;
         };
         let [old, new] = [&before, &after].map(|text| text.lines().collect::<Vec<_>>());
-        let same = |pairs: &mut dyn Iterator<Item = (&&str, &&str)>| {
-            pairs.take_while(|(old, new)| old == new).count()
-        };
-        let most = old.len().min(new.len());
-        let head = same(&mut old.iter().zip(&new));
-        let tail = same(&mut old.iter().rev().zip(new.iter().rev())).min(most - head);
-        let inner = lines[head..old.len() - tail].to_vec();
-        let previous = head.checked_sub(1).map_or(1, |one| lines[one]);
-        let count = new.len() - head - tail;
-        let changed = (0..count).map(|k| {
-            let last = inner.last().copied().unwrap_or(previous);
-            inner.get(k).copied().unwrap_or(last)
-        });
-        let changed: Vec<usize> = changed.collect();
-        lines.splice(head..old.len() - tail, changed);
+        let previous = lines.clone();
+        lines.clear();
+        let (mut from, mut count) = (0, 0);
+        let mut pairs = common(&old, &new);
+        pairs.push((old.len(), new.len()));
+        for (own, place) in pairs {
+            // Lines that were changed in place keep their numbers.
+            for k in 0..place - count {
+                let number = previous[..own].get(from + k).or(lines.last()).copied();
+                lines.push(number.unwrap_or(1));
+            }
+            lines.extend(previous.get(own));
+            (from, count) = (own + 1, place + 1);
+        }
         before = after;
     }
     lines
+}
+
+/// Most pairs of lines that are compared; of longer texts only what is the same at both ends is found.
+const MOST_PAIRS: usize = 1 << 22;
+
+/// Places of a longest common subsequence of two lists of lines, in their order.
+fn common(old: &[&str], new: &[&str]) -> Vec<(usize, usize)> {
+    let head = old.iter().zip(new).take_while(|(a, b)| a == b).count();
+    let (inner_old, inner_new) = (&old[head..], &new[head..]);
+    let ends = inner_old.iter().rev().zip(inner_new.iter().rev());
+    let tail = ends.take_while(|(a, b)| a == b).count();
+    let inner_old = &inner_old[..inner_old.len() - tail];
+    let inner_new = &inner_new[..inner_new.len() - tail];
+    let (rows, columns) = (inner_old.len(), inner_new.len());
+    let mut pairs: Vec<(usize, usize)> = (0..head).map(|k| (k, k)).collect();
+    if rows * columns <= MOST_PAIRS {
+        let width = columns + 1;
+        // Length of the longest one of what lies behind each pair.
+        let mut longest = vec![0u32; (rows + 1) * width];
+        for (i, a) in inner_old.iter().enumerate().rev() {
+            for (j, b) in inner_new.iter().enumerate().rev() {
+                let at = i * width + j;
+                longest[at] = match a == b {
+                    true => longest[at + width + 1] + 1,
+                    false => longest[at + width].max(longest[at + 1]),
+                };
+            }
+        }
+        let (mut i, mut j) = (0, 0);
+        while i < rows && j < columns {
+            let at = i * width + j;
+            if inner_old[i] == inner_new[j] {
+                pairs.push((head + i, head + j));
+                (i, j) = (i + 1, j + 1);
+            } else if longest[at + width] >= longest[at + 1] {
+                i += 1;
+            } else {
+                j += 1;
+            }
+        }
+    }
+    pairs.extend((0..tail).map(|k| (old.len() - tail + k, new.len() - tail + k)));
+    pairs
 }
 
 /// The names of a dotted key; one in quotes may have dots of its own, as in `parameters."one.activation_energy".low`.
@@ -264,6 +306,23 @@ mod tests {
         assert_eq!(of(&["a.new=2"]), [1, 2, 2, 3, 4, 5, 6, 7]);
         assert_eq!(of(&["a.new=2", "a.other=2"]), [1, 2, 2, 2, 3, 4, 5, 6, 7]);
         assert_eq!(of(&["b.y=4"]), [1, 2, 3, 4, 7]);
+        assert_eq!(of(&["a.new=2", "b.y=4"]), [1, 2, 2, 3, 4, 7]);
+    }
+
+    #[test]
+    fn a_list_of_tables_that_becomes_a_value_at_the_top_leaves_the_lines_between() {
+        let text = "format = 1\n[time]\nend = 1\n[[particles]]\nx = 1\n[gas]\ny = 1\n";
+        let set = vec!["particles=[{ x = 2 }]".to_owned()];
+        let (changed, _) = super::apply(Path::new("case.toml"), text, &set).unwrap();
+        let lines = lines(Path::new("case.toml"), text, &set);
+        for (line, number) in changed.lines().zip(&lines) {
+            let place = text.lines().position(|own| own == line);
+            assert!(
+                place.is_none_or(|place| place + 1 == *number),
+                "{changed} {lines:?}"
+            );
+        }
+        assert_eq!(lines.len(), changed.lines().count());
     }
 
     #[test]

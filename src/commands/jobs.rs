@@ -107,6 +107,8 @@ pub(super) enum JobEvent<'a> {
     UnderWay(usize, &'a [usize]),
     /// One has ended.
     Ended(usize, &'a JobEnd),
+    /// One was interrupted.
+    Stopped(usize, &'a JobEnd),
 }
 
 /// How runs are made.
@@ -177,6 +179,8 @@ impl Jobs<'_> {
                         kept.map_err(|error| Failure::told(exit::OTHER, &error))?;
                     }
                     told(JobEvent::Ended(one.place, &end))?;
+                } else {
+                    told(JobEvent::Stopped(one.place, &end))?;
                 }
                 ends[one.place] = Some(end);
             }
@@ -184,16 +188,11 @@ impl Jobs<'_> {
             if self.at_once > 1 && !running.is_empty() && last_told.elapsed() >= TELL {
                 last_told = Instant::now();
                 let places: Vec<usize> = running.iter().map(|one| one.place).collect();
-                let ended = ends.iter().flatten().count();
-                told(JobEvent::UnderWay(ended, &places))?;
+                told(JobEvent::UnderWay(ended(&ends), &places))?;
             }
             thread::sleep(LOOK);
         }
-        let whole = ends
-            .iter()
-            .flatten()
-            .filter(|end| end.code != exit::CHECKPOINTED);
-        let whole = whole.count();
+        let whole = ended(&ends);
         if whole < jobs.len() {
             let message = format!(
                 "stopped: {whole} of {} runs have ended; the same command keeps them and goes on with the others",
@@ -243,6 +242,12 @@ impl Jobs<'_> {
             shown: shown || bar,
         })
     }
+}
+
+/// How many have ended, interrupted ones not counted.
+fn ended(ends: &[Option<JobEnd>]) -> usize {
+    let ends = ends.iter().flatten();
+    ends.filter(|end| end.code != exit::CHECKPOINTED).count()
 }
 
 /// All that a run says; shown at once where it is the only one.

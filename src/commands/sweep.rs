@@ -207,6 +207,7 @@ impl Arguments {
             let ends = runs.follow(chosen, |event| {
                 match event {
                     JobEvent::Begins(_) | JobEvent::UnderWay(..) if self.quiet => {}
+                    JobEvent::Begins(place) if (kind.result)(&chosen[place].folder).is_some() => {}
                     JobEvent::Begins(place) => {
                         let settings = chosen[place].settings.join("  ");
                         let number = self.only.map_or(place + 1, |number| number as usize);
@@ -219,11 +220,11 @@ impl Arguments {
                     JobEvent::Ended(place, end) => {
                         let settings = chosen[place].settings.join("  ");
                         say(format_args!("{settings}  {}", ending(end.code)))?;
-                        if !end.shown && !end.told.trim().is_empty() {
-                            tell_line(format_args!("{settings} says:"));
-                            tell(&end.told);
-                        }
+                        tell_of(&settings, end);
                         gathered = sweep.gather()?;
+                    }
+                    JobEvent::Stopped(place, end) => {
+                        tell_of(&chosen[place].settings.join("  "), end);
                     }
                 }
                 Ok(())
@@ -342,6 +343,14 @@ fn exit_code<'e>(mut ends: impl Iterator<Item = &'e JobEnd> + Clone) -> u8 {
         Some(end) => end.code,
         None if outside => exit::OUTSIDE_BANDS,
         None => exit::OK,
+    }
+}
+
+/// Tells what a run of these settings said, where that was not shown at once.
+fn tell_of(settings: &str, end: &JobEnd) {
+    if !end.shown && !end.told.trim().is_empty() {
+        tell_line(format_args!("{settings} says:"));
+        tell(&end.told);
     }
 }
 

@@ -29,6 +29,15 @@ pub enum HostError {
         /// The name asked for.
         name: &'static str,
     },
+    /// A script by which the force of the gas would not act, or twice.
+    #[error(
+        "the script does not have the host add the force of the gas once a step (`fix {name}`): it is that of another version of \
+         Calcine; install `calcine` and `calcine-liggghts` together"
+    )]
+    NoPush {
+        /// The fix that does.
+        name: &'static str,
+    },
     /// Particles that went away.
     #[error(
         "{found} of {expected} particles are left; they left the box or their speed exploded{which}"
@@ -70,7 +79,9 @@ impl HostError {
             HostError::Usage | HostError::Wire(_) => SolverFailure::Other,
             HostError::File { .. } => SolverFailure::File,
             HostError::Lost { .. } => SolverFailure::LostParticles,
-            HostError::Missing { .. } | HostError::NoStep { .. } => SolverFailure::InvalidInput,
+            HostError::Missing { .. } | HostError::NoPush { .. } | HostError::NoStep { .. } => {
+                SolverFailure::InvalidInput
+            }
             HostError::Change { .. } | HostError::Push { .. } => SolverFailure::InvalidInput,
         }
     }

@@ -4,17 +4,32 @@
 //! what its contacts take. Here they are added to the forces at each step behind the script's own, in the order of its sums.
 
 use std::ffi::c_int;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::library::{Liggghts, StepHook};
 
 /// The fix that holds the forces in N; the script of a moving bed makes it.
 pub const PUSH: &str = "calcine_push";
 
+/// The fix by which LIGGGHTS calls the host at each step.
+pub const EACH_STEP: &str = "calcine_each_step";
+/// What scripts for other hosts have: with it forces would act twice.
+pub const ADDED_BY_VARIABLES: &str = "calcine_add";
+
+/// True once LIGGGHTS has called.
+static CALLED: AtomicBool = AtomicBool::new(false);
+
+/// Whether LIGGGHTS has called, as it does in its setup: otherwise forces of the gas would not act.
+pub fn acts() -> bool {
+    CALLED.load(Ordering::Relaxed)
+}
+
 /// Has them act on all but the populations that are held, from now on, for as long as what is given back lives.
 pub fn act(liggghts: &mut Liggghts, held: &[u64]) -> StepHook {
     let held: Vec<c_int> = held.iter().map(|kind| *kind as c_int + 1).collect();
     let mut kinds: Vec<c_int> = Vec::new();
     let work = move |liggghts: &mut Liggghts| {
+        CALLED.store(true, Ordering::Relaxed);
         kinds.clear();
         if !held.is_empty() {
             kinds.extend_from_slice(liggghts.integers("type").unwrap_or_default());

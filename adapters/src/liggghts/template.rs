@@ -22,7 +22,7 @@ const PREFIX: &str = "calcine_";
 const SAME: f64 = 1e-9;
 
 /// What Calcine does itself, by the first words of commands that would do it too, and the remedy.
-const REFUSED: [(&[&str], &str, &str); 5] = [
+const REFUSED: [(&[&str], &str, &str); 6] = [
     (
         &["run", "minimize", "rerun", "reset_timestep"],
         "Calcine advances the particles and keeps the time",
@@ -45,6 +45,11 @@ const REFUSED: [(&[&str], &str, &str); 5] = [
         ],
         "the case file says which particles there are and where they start",
         "place them by `particles.place`, and read them by `read_data ${calcine_data}`",
+    ),
+    (
+        &["run_style"],
+        "the host adds the force of the gas at each step of the integrator `verlet`, which is LIGGGHTS' own",
+        "leave the line out",
     ),
     (
         &["if", "partition"],

@@ -157,6 +157,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
     /// The same, with another method of no more stages that tries to take each span in one step, and does where its error is far
     /// below what is tolerated.
     pub fn quickly(mut self, quick: &'static RosenbrockTableau) -> Self {
+        debug_assert!(quick.stages <= self.tableau.stages);
         self.quick = Some(quick);
         self
     }

@@ -91,7 +91,7 @@ fn compared(
                 settings.extend(LOOSE.iter().filter(|_| loose).map(|&word| word.to_owned()));
                 settings.extend(places.map(|places| {
                     let path = places.table.display().to_string();
-                    format!("particles[0].place={{ file = {path:?} }}")
+                    format!("particles[0].place={{ file = '{path}' }}")
                 }));
                 let run = CalcineRun {
                     case: "beads.toml",

@@ -88,7 +88,10 @@ impl StockComparison {
             format!("{}s", short(each)),
             format!("{:.2}", each / stock),
             format!("{:.0}", whole.cost.memory / 1e6),
-            format!("{figure:.6}").chars().take(7).collect(),
+            match figure.abs() < 10.0 {
+                true => format!("{figure:.5}"),
+                false => format!("{figure:.1}"),
+            },
         ])
     }
 }

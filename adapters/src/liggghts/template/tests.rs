@@ -24,6 +24,7 @@ fn what_calcine_does_itself_is_refused_with_the_line() {
             "line 6, `fix ins all  insert/rate/region",
         ),
         ("fix own all external pf/array 1", "leave the line out"),
+        ("run_style respa 2 2", "at each step"),
         ("include other.in", "calcine.walls"),
         (
             "if \"1 > 0\" then \"run 500\"",

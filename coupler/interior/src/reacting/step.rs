@@ -234,9 +234,6 @@ impl Reacting {
             }
             let slope = lines[c];
             lines[count + c] = slope * composition[key] - mean;
-            if !slopes {
-                continue;
-            }
             let local = told(workspace.local_slopes[*reaction]);
             // A cell gives no more than its share of the gas that is used: orders below one follow a gas less than in proportion,
             // and would take from cells that have none.

@@ -315,9 +315,9 @@ impl StiffSystem for ParticleSystem<'_> {
         self.chemistry.directions().len() + 1
     }
 
-    /// Where slopes are not wanted those of the attempt before hold.
+    /// What a cell gives of a particle's rate follows from it: of each attempt.
     fn direct(&self) -> bool {
-        self.guess.slopes
+        true
     }
 
     fn follows_tangent(&self) -> bool {
