@@ -1,7 +1,7 @@
 //! Forces of the gas that are constant over a window.
 //!
-//! LIGGGHTS' own way, `fix addforce` by variables of each particle, evaluates an expression a component, particle and step: a fifth of
-//! what its contacts take. Here they are added to the forces at each step behind the script's own, in the order of its sums.
+//! LIGGGHTS' own way, `fix addforce` by variables of each particle, evaluates an expression a component, particle and step: a fifth as
+//! much again as all else takes. Here they are added to the forces at each step behind the script's own, in the order of its sums.
 
 use std::ffi::c_int;
 use std::sync::atomic::{AtomicBool, Ordering};
