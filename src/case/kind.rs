@@ -33,7 +33,7 @@ pub fn kind_of_text(
     let wrong = |fact: String, hint: String| {
         let names: Vec<String> = kind_names().iter().map(|n| format!("\"{n}\"")).collect();
         let help = format!("it may be {}{hint}", names.join(", "));
-        one(path, &effective, span.clone(), fact, &help).numbered(set::lines(path, text, settings))
+        one(path, &effective, span.clone(), fact, &help).numbered(set::lines(text, &effective))
     };
     let Some(name) = item.as_str() else {
         let fact = format!("`kind` needs a text in quotes, but is {}", item.type_name());

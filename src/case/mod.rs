@@ -120,7 +120,7 @@ pub fn parse_with(
     case.hash = input_files::extended(case.hash, &case.files);
     case.changes = changes;
     if !set.is_empty() {
-        case.lines = set::lines(path, text, set);
+        case.lines = set::lines(text, &case.effective);
     }
     Ok(case)
 }

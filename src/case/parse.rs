@@ -90,7 +90,7 @@ pub(super) fn parse_as<C>(
             Err(one(path, &effective, 0..0, message, help))
         }
         _ => {
-            let lines = set::lines(path, text, set);
+            let lines = set::lines(text, &effective);
             Err(CaseErrors::new(path, &effective, problems).numbered(lines))
         }
     }

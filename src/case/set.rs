@@ -108,30 +108,23 @@ pub(super) fn apply(
 }
 
 /// The line in the file, from 1, of each line of the text with `--set` applied: of a line that is new, that of the one before.
-pub(super) fn lines(path: &Path, text: &str, set: &[String]) -> Vec<usize> {
-    let mut before = text.to_owned();
-    let mut lines: Vec<usize> = (1..=text.lines().count()).collect();
-    for last in 1..=set.len() {
-        // What was applied whole can be applied in part.
-        let Ok((after, _)) = apply(path, text, &set[..last]) else {
-            break;
-        };
-        let [old, new] = [&before, &after].map(|text| text.lines().collect::<Vec<_>>());
-        let previous = lines.clone();
-        lines.clear();
-        let (mut from, mut count) = (0, 0);
-        let mut pairs = common(&old, &new);
-        pairs.push((old.len(), new.len()));
-        for (own, place) in pairs {
-            // Lines that were changed in place keep their numbers.
-            for k in 0..place - count {
-                let number = previous[..own].get(from + k).or(lines.last()).copied();
-                lines.push(number.unwrap_or(1));
-            }
-            lines.extend(previous.get(own));
-            (from, count) = (own + 1, place + 1);
+pub(super) fn lines(file: &str, effective: &str) -> Vec<usize> {
+    let [old, new] = [file, effective].map(|text| text.lines().collect::<Vec<_>>());
+    let mut lines = Vec::with_capacity(new.len());
+    let mut pairs = common(&old, &new);
+    pairs.push((old.len(), new.len()));
+    // Numbers of the lines up to the last one that both have.
+    let mut known = 0;
+    for (own, place) in pairs {
+        // Lines that were changed in place keep their numbers.
+        let changed = (known + 1..=own).map(Some).chain(std::iter::repeat(None));
+        for number in changed.take(place - lines.len()) {
+            lines.push(number.unwrap_or(lines.last().copied().unwrap_or(1)));
         }
-        before = after;
+        if own < old.len() {
+            lines.push(own + 1);
+        }
+        known = own + 1;
     }
     lines
 }
@@ -292,14 +285,14 @@ fn replace(item: &mut Item, value: Value) {
 mod tests {
     use std::path::Path;
 
-    use super::{lines, parts};
+    use super::{apply, lines, parts};
 
     #[test]
     fn lines_of_the_file_keep_their_numbers_where_set_adds_some() {
         let text = "[a]\nx = 1\n[b]\ny = [\n1,\n2]\nz = 3\n";
         let of = |set: &[&str]| {
             let set: Vec<String> = set.iter().map(|&one| one.to_owned()).collect();
-            lines(Path::new("case.toml"), text, &set)
+            lines(text, &apply(Path::new("case.toml"), text, &set).unwrap().0)
         };
         assert_eq!(of(&[]), [1, 2, 3, 4, 5, 6, 7]);
         assert_eq!(of(&["a.x=2", "b.z=4"]), [1, 2, 3, 4, 5, 6, 7]);
@@ -313,8 +306,8 @@ mod tests {
     fn a_list_of_tables_that_becomes_a_value_at_the_top_leaves_the_lines_between() {
         let text = "format = 1\n[time]\nend = 1\n[[particles]]\nx = 1\n[gas]\ny = 1\n";
         let set = vec!["particles=[{ x = 2 }]".to_owned()];
-        let (changed, _) = super::apply(Path::new("case.toml"), text, &set).unwrap();
-        let lines = lines(Path::new("case.toml"), text, &set);
+        let (changed, _) = apply(Path::new("case.toml"), text, &set).unwrap();
+        let lines = lines(text, &changed);
         for (line, number) in changed.lines().zip(&lines) {
             let place = text.lines().position(|own| own == line);
             assert!(

@@ -15,6 +15,7 @@ use super::signals::SignalThread;
 use crate::exit;
 use crate::results::{ResultsError, STATUS, SUMMARY, files};
 use crate::simulation::begun_before;
+use crate::watch::Progress;
 
 /// How often runs are looked at, and how often is told how far those are that go on side by side.
 const LOOK: Duration = Duration::from_millis(20);
@@ -33,11 +34,9 @@ pub(super) struct Job {
 const FAILED: &str = "failed";
 
 impl Job {
-    /// How much of its process time it has done, as its results tell so far.
-    pub(super) fn fraction_done(&self) -> Option<f64> {
-        let text = std::fs::read_to_string(self.folder.join(STATUS)).ok()?;
-        let status: serde_json::Value = serde_json::from_str(&text).ok()?;
-        status.get("fraction_done")?.as_f64()
+    /// How far it is, as its results tell.
+    pub(super) fn progress(&self) -> Progress {
+        Progress::read(&self.folder.join(STATUS))
     }
 
     /// The file that says how it failed.

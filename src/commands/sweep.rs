@@ -207,11 +207,13 @@ impl Arguments {
             let ends = runs.follow(chosen, |event| {
                 match event {
                     JobEvent::Begins(_) | JobEvent::UnderWay(..) if self.quiet => {}
-                    JobEvent::Begins(place) if (kind.result)(&chosen[place].folder).is_some() => {}
                     JobEvent::Begins(place) => {
-                        let settings = chosen[place].settings.join("  ");
                         let number = self.only.map_or(place + 1, |number| number as usize);
-                        tell_line(format_args!("run {number} of {}: {settings}", jobs.len()));
+                        let kept = gathered.0[number - 1].as_ref();
+                        if !kept.is_some_and(JobEnd::is_complete) {
+                            let settings = chosen[place].settings.join("  ");
+                            tell_line(format_args!("run {number} of {}: {settings}", jobs.len()));
+                        }
                     }
                     JobEvent::UnderWay(ended, places) => {
                         let under_way = places.iter().map(|&place| &chosen[place]);
@@ -357,10 +359,10 @@ fn tell_of(settings: &str, end: &JobEnd) {
 /// How far runs are that go on side by side.
 fn progress<'j>(ended: usize, all: usize, under_way: impl Iterator<Item = &'j Job>) -> String {
     let each = under_way.map(|job| {
-        let settings = job.settings.join("  ");
-        match job.fraction_done() {
-            Some(done) => format!("{settings}: {:.0} %", 100.0 * done),
-            None => format!("{settings}: begins"),
+        let (settings, progress) = (job.settings.join("  "), job.progress());
+        match progress.words.is_empty() {
+            true => format!("{settings}: begins"),
+            false => format!("{settings}: {:.0} %", 100.0 * progress.done),
         }
     });
     let each: Vec<String> = each.collect();
@@ -561,7 +563,11 @@ mod tests {
         let jobs = [job("50"), job("200")];
         std::fs::create_dir_all(&jobs[0].folder).unwrap();
         let status = jobs[0].folder.join("status.json");
-        std::fs::write(status, r#"{"state": "running", "fraction_done": 0.426}"#).unwrap();
+        std::fs::write(
+            status,
+            r#"{"state": "running", "windows": 3, "fraction_done": 0.426}"#,
+        )
+        .unwrap();
         let text = progress(1, 8, jobs.iter());
         std::fs::remove_dir_all(&folder).unwrap();
         let wanted = "1 of 8 have ended; under way: time.acceleration=50: 43 %; time.acceleration=200: begins";

@@ -16,7 +16,8 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use self::http::{Answer, Body, answer};
-use self::progress::{Progress, end_of_log};
+pub(crate) use self::progress::Progress;
+use self::progress::end_of_log;
 use crate::report::links::LINKED;
 use crate::report::page::escape;
 use crate::results::{ResultsError, SERIES, STATUS, SUMMARY};

@@ -19,7 +19,7 @@ const QUIET: Duration = Duration::from_secs(15);
 
 /// How far a run is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Progress {
+pub(crate) struct Progress {
     /// `running`, `stopped`, `complete`, or `unknown` while there is no status yet.
     pub state: String,
     /// The share that is done.

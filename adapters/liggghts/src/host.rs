@@ -22,7 +22,7 @@ use crate::error::HostError;
 use crate::library::{self, Liggghts, StepHook};
 use crate::parent::ParentCarrier;
 use crate::population_update::PopulationUpdate;
-use crate::pushed_force::{self, ADDED_BY_VARIABLES, EACH_STEP, PUSH};
+use crate::pushed_force::{self, EACH_STEP, PUSH};
 use crate::rank_particles::{RankParticles, WEIGHT};
 
 /// Ticks of the wire's clocks in one second.
@@ -247,8 +247,8 @@ impl Host {
             self.acting = Some(pushed_force::act(&mut self.liggghts, &self.held));
         }
         self.liggghts.command("run 0");
-        let twice = self.has_fix(ADDED_BY_VARIABLES)?;
-        if !self.frozen && (twice || !pushed_force::acts()) {
+        let acts = self.has_fix(EACH_STEP)? && pushed_force::acts();
+        if !self.frozen && !acts {
             return Err(HostError::NoPush { name: EACH_STEP });
         }
         drag::forget(&mut self.liggghts);

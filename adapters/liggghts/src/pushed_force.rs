@@ -13,8 +13,6 @@ pub const PUSH: &str = "calcine_push";
 
 /// The fix by which LIGGGHTS calls the host at each step.
 pub const EACH_STEP: &str = "calcine_each_step";
-/// What scripts for other hosts have: with it forces would act twice.
-pub const ADDED_BY_VARIABLES: &str = "calcine_add";
 
 /// True once LIGGGHTS has called.
 static CALLED: AtomicBool = AtomicBool::new(false);

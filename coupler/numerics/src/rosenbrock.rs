@@ -106,8 +106,6 @@ pub struct Rosenbrock<L> {
     tableau: &'static RosenbrockTableau,
     /// The method that tries a whole span in one step before.
     quick: Option<&'static RosenbrockTableau>,
-    /// That of the step at hand.
-    current: &'static RosenbrockTableau,
     algebra: L,
     derivatives: SystemDerivatives,
     width: usize,
@@ -136,7 +134,6 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         Self {
             tableau,
             quick: None,
-            current: tableau,
             algebra,
             derivatives: SystemDerivatives::default(),
             width: 0,
@@ -206,7 +203,6 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         // Length and error of the last accepted step.
         let mut before: Option<(f64, f64)> = None;
         let order = f64::from(self.tableau.error_order);
-        self.current = self.tableau;
         let fail = |reached, cause, worst| IntegrationStalled {
             reached,
             span,
@@ -216,32 +212,28 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         self.differentiate(system, y)
             .map_err(|worst| fail(time, StallCause::NotFinite, worst))?;
         step = step.min(system.first_step(y, &self.start));
-        if let Some(quick) = self.quick.filter(|_| step >= span) {
-            self.current = quick;
-        }
+        let mut quick = self.quick.filter(|_| step >= span);
         let mut last_rejected = false;
         while done.steps + done.rejected < accuracy.steps {
             let left = span - time;
             let ends = step >= 0.999 * left;
             step = if ends { left } else { step };
-            let (error, place) = self.attempt(system, y, step, accuracy, &mut done.evaluations);
-            if !std::ptr::eq(self.current, self.tableau) {
-                let next = &self.next[..self.unknowns];
-                if !(error <= QUICK && system.admissible(y, next) >= 1.0) {
-                    self.current = self.tableau;
-                    continue;
-                }
-            }
-            worst = place;
-            let mut factor = SAFETY * error.max(1e-10).powf(-1.0 / order);
+            let tableau = quick.unwrap_or(self.tableau);
+            let evaluations = &mut done.evaluations;
+            let (error, place) = self.attempt(system, y, (step, tableau), accuracy, evaluations);
             let inside = if error <= 1.0 {
                 system.admissible(y, &self.next[..self.unknowns])
             } else {
                 1.0
             };
+            if quick.take().is_some() && !(error <= QUICK && inside >= 1.0) {
+                continue;
+            }
+            worst = place;
+            let mut factor = SAFETY * error.max(1e-10).powf(-1.0 / order);
             if error <= 1.0 && inside >= 1.0 {
                 if system.follows_tangent() {
-                    self.follow_tangent(system.parameters(), step);
+                    self.follow_tangent(system.parameters(), (step, tableau));
                 }
                 if done.steps == 0 {
                     self.first_step = step;
@@ -341,11 +333,11 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         &mut self,
         system: &mut S,
         y: &[f64],
-        step: f64,
+        (step, tableau): (f64, &RosenbrockTableau),
         accuracy: IntegrationAccuracy<'_>,
         evaluations: &mut usize,
     ) -> (f64, usize) {
-        let (n, width, tableau) = (self.unknowns, self.width, self.current);
+        let (n, width) = (self.unknowns, self.width);
         let (scaled, inverse) = (tableau.gamma * step, 1.0 / step);
         if !self
             .algebra
@@ -383,14 +375,19 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         for (stage, m) in self.stages.chunks_exact(width).zip(&tableau.m) {
             add(&mut self.next, *m, stage);
         }
-        self.error(y, accuracy)
+        self.error(y, &tableau.e, accuracy)
     }
 
-    fn error(&mut self, y: &[f64], accuracy: IntegrationAccuracy<'_>) -> (f64, usize) {
+    fn error(
+        &mut self,
+        y: &[f64],
+        weights: &[f64],
+        accuracy: IntegrationAccuracy<'_>,
+    ) -> (f64, usize) {
         let (n, width) = (self.unknowns, self.width);
         let errors = &mut self.rates;
         errors.fill(0.0);
-        for (stage, e) in self.stages.chunks_exact(width).zip(&self.current.e) {
+        for (stage, e) in self.stages.chunks_exact(width).zip(weights) {
             add(errors, *e, stage);
         }
         let (mut most, mut place) = (0.0, 0);
@@ -425,8 +422,8 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
     }
 
     /// Moves the tangents over the step that was just accepted.
-    fn follow_tangent(&mut self, parameters: usize, step: f64) {
-        let (n, width, tableau) = (self.unknowns, self.width, self.current);
+    fn follow_tangent(&mut self, parameters: usize, (step, tableau): (f64, &RosenbrockTableau)) {
+        let (n, width) = (self.unknowns, self.width);
         let (scaled, inverse) = (tableau.gamma * step, 1.0 / step);
         for p in 0..parameters {
             let slope = &mut self.tangent[p * width..(p + 1) * width];

@@ -207,6 +207,32 @@ fn a_quick_method_takes_short_spans_and_leaves_long_ones_as_they_are() {
 }
 
 #[test]
+fn a_quick_method_takes_a_span_where_its_error_is_a_tenth_of_the_tolerance() {
+    // The smallest tolerance with which a method takes the span in one step and so many evaluations.
+    let least = |mut method: Rosenbrock<DenseMatrix>| {
+        let (mut low, mut high) = (1e-12f64, 1.0f64);
+        for _ in 0..60 {
+            let middle = (low * high).sqrt();
+            let mut y = [1.0, 1.0, 0.0];
+            let tolerance = [middle; 4];
+            let accuracy = IntegrationAccuracy::absolute(&tolerance);
+            let mut system = text!(3, 1, 1.5, nonlinear);
+            let done = method
+                .integrate(&mut system, &mut y, 0.1, accuracy)
+                .unwrap();
+            match (done.evaluations, done.steps, done.rejected) {
+                (2, 1, 0) => high = middle,
+                _ => low = middle,
+            }
+        }
+        high
+    };
+    let plain = least(method(&RosenbrockTableau::RODAS3, 3));
+    let quick = least(method(&RosenbrockTableau::RODAS4, 3).quickly(&RosenbrockTableau::RODAS3));
+    assert!((quick / plain - 10.0).abs() < 1e-6, "{quick} {plain}");
+}
+
+#[test]
 fn robertson_s_stiff_problem_agrees_with_its_reference_solution_and_keeps_its_sum() {
     // At t = 40: Hairer and Wanner, IV.10.
     for (tableau, most) in BOTH.into_iter().zip([800, 240]) {
