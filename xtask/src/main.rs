@@ -13,6 +13,7 @@ mod packages;
 mod parcels;
 mod python;
 mod runs;
+mod snapshots;
 mod sources;
 mod steps;
 mod stock;
@@ -58,8 +59,8 @@ usage: cargo xtask TASK
   bench parcels           what parcels cost by phase
         [--no-build]      with the programs that were built last
   bench stock             a simulated second beside programs that are in use, on one core: DPMFoam,
-        [TABLE …]         MPPICFoam, LIGGGHTS and pimpleFoam: beads, fluidised, parcels,
-                          parcels-fine, particles, gas
+        [TABLE …]         MPPICFoam, LIGGGHTS and pimpleFoam: beads, fluidised, still,
+                          parcels, parcels-fine, particles, gas
         [--no-build]      with the programs that were built last
   bench python-overhead   processor time of runs from Python beyond that of `calcine run`, with
         [ROUNDS [CASE …]] the same bits: 5 rounds of moving-bed by default; KEY=VALUE changes it

@@ -52,9 +52,38 @@ pub fn last_time(folder: &Path) -> TaskResult<PathBuf> {
         .ok_or_else(|| Stop(format!("{}: no results", folder.display())))
 }
 
+/// The internal field in the text of a file in ASCII, its components one after the other; of one component where it is uniform.
+pub fn internal_field(text: &str, cells: usize) -> Option<Vec<f64>> {
+    let (_, after) = text.split_once("internalField")?;
+    let numbers = |text: &str| -> Option<Vec<f64>> {
+        let words = text.split(|c: char| c.is_whitespace() || "()".contains(c));
+        let words = words.filter(|word| !word.is_empty());
+        words.map(|word| word.parse().ok()).collect()
+    };
+    if let Some(uniform) = after.trim_start().strip_prefix("uniform") {
+        let one = numbers(uniform.split_once(';')?.0)?;
+        return Some(one.repeat(cells));
+    }
+    let (_, list) = after.split_once('(')?;
+    numbers(list.split_once(';')?.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fields_of_openfoam_are_read_uniform_or_not() {
+        let list = "FoamFile { object U; }\ndimensions [0 1 -1 0 0 0 0];\n\
+            internalField   nonuniform List<vector> \n2\n(\n(1 2e-1 0)\n(-3 0 0)\n)\n;\n\nboundaryField\n{ lid { } }";
+        assert_eq!(
+            internal_field(list, 2),
+            Some(vec![1.0, 0.2, 0.0, -3.0, 0.0, 0.0])
+        );
+        let uniform = "internalField   uniform 300;\nboundaryField { }";
+        assert_eq!(internal_field(uniform, 2), Some(vec![300.0, 300.0]));
+        assert_eq!(internal_field("boundaryField { }", 2), None);
+    }
 
     #[test]
     fn the_latest_time_is_found_by_its_number() {

@@ -15,6 +15,12 @@ use crate::workspace::{CargoProfile, Workspace};
 /// Cells across and along the heated bed (10 k, 100 k, 1 M in all), and windows.
 const SIZES: [[u32; 3]; 3] = [[18, 42, 5], [38, 92, 2], [84, 190, 1]];
 
+/// Words for tolerances near those of OpenFOAM's tutorials.
+pub const LOOSE: [&str; 2] = [
+    "gas.controls.outer_tolerance=1e-4",
+    "gas.controls.linear_tolerance=1e-8",
+];
+
 /// Phases in the order of a window, as `wall_time_s` in summary.json names them. The first two
 /// happen once in a run of a frozen bed, and in each window where particles move.
 pub const PHASES: [&str; 7] = [

@@ -9,7 +9,8 @@ use super::field::{self, MeanField};
 use super::start;
 use crate::json::Json;
 use crate::measure::{Cost, measured};
-use crate::steps::{Stop, TaskResult, quietly};
+use crate::snapshots;
+use crate::steps::{TaskResult, quietly};
 
 /// What a run gave.
 pub struct Done {
@@ -100,7 +101,7 @@ pub fn run(
             fields: None,
         });
     }
-    let last = last_snapshot(&folder.join("gas"))?;
+    let last = snapshots::last(&folder.join("gas"), "vtu")?;
     let read = |quantity: &ErrorQuantity| {
         field::of_calcine(&last, quantity.calcine, case.cells(resolution))
     };
@@ -111,13 +112,4 @@ pub fn run(
         iterations,
         fields: Some(fields?),
     })
-}
-
-fn last_snapshot(folder: &Path) -> TaskResult<std::path::PathBuf> {
-    let entries = fs::read_dir(folder).map_err(|cause| Stop::io(folder, &cause))?;
-    let paths = entries.flatten().map(|entry| entry.path());
-    let last = paths
-        .filter(|path| path.extension().is_some_and(|ending| ending == "vtu"))
-        .max();
-    last.ok_or_else(|| Stop(format!("{}: no snapshots", folder.display())))
 }

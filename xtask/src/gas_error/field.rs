@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use crate::openfoam::internal_field;
+use crate::snapshots::appended;
 use crate::steps::{Stop, TaskResult};
 
 /// Values of the cells of a block of `counts` cells along x and y, x fastest, all components of a cell together.
@@ -99,21 +101,6 @@ pub fn of_openfoam(path: &Path, counts: [usize; 2]) -> TaskResult<MeanField> {
     })
 }
 
-fn internal_field(text: &str, cells: usize) -> Option<Vec<f64>> {
-    let (_, after) = text.split_once("internalField")?;
-    let numbers = |text: &str| -> Option<Vec<f64>> {
-        let words = text.split(|c: char| c.is_whitespace() || "()".contains(c));
-        let words = words.filter(|word| !word.is_empty());
-        words.map(|word| word.parse().ok()).collect()
-    };
-    if let Some(uniform) = after.trim_start().strip_prefix("uniform") {
-        let one = numbers(uniform.split_once(';')?.0)?;
-        return Some(one.repeat(cells));
-    }
-    let (_, list) = after.split_once('(')?;
-    numbers(list.split_once(';')?.0)
-}
-
 /// An array of cells of a VTU file of Calcine.
 pub fn of_calcine(path: &Path, name: &str, counts: [usize; 2]) -> TaskResult<MeanField> {
     let bytes = fs::read(path).map_err(|cause| Stop::io(path, &cause))?;
@@ -124,34 +111,6 @@ pub fn of_calcine(path: &Path, name: &str, counts: [usize; 2]) -> TaskResult<Mea
             path.display()
         ))
     })
-}
-
-/// A raw appended array of 64-bit numbers by its name.
-pub fn appended(bytes: &[u8], name: &str) -> Option<Vec<f64>> {
-    let mark: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
-    let begin = bytes
-        .windows(mark.len())
-        .position(|window| window == mark)?;
-    let head = std::str::from_utf8(&bytes[..begin]).ok()?;
-    let named = format!("type=\"Float64\" Name=\"{name}\"");
-    let element = head.split('<').find(|element| element.contains(&named))?;
-    let offset: usize = element
-        .split_once("offset=\"")?
-        .1
-        .split_once('"')?
-        .0
-        .parse()
-        .ok()?;
-    let data = bytes.get(begin + mark.len() + offset..)?;
-    let (length, data) = data.split_first_chunk::<8>()?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
-    let numbers = data.get(..length)?.as_chunks::<8>().0;
-    Some(
-        numbers
-            .iter()
-            .map(|number| f64::from_le_bytes(*number))
-            .collect(),
-    )
 }
 
 #[cfg(test)]
@@ -170,34 +129,5 @@ mod tests {
         assert_eq!(coarse.distance(&difference), 0.0);
         let lengths = MeanField::new([1, 1], vec![3.0, 0.0, 4.0]).unwrap();
         assert_eq!(lengths.size(0.0), 5.0);
-    }
-
-    #[test]
-    fn fields_of_openfoam_are_read_uniform_or_not() {
-        let list = "FoamFile { object U; }\ndimensions [0 1 -1 0 0 0 0];\n\
-            internalField   nonuniform List<vector> \n2\n(\n(1 2e-1 0)\n(-3 0 0)\n)\n;\n\nboundaryField\n{ lid { } }";
-        assert_eq!(
-            internal_field(list, 2),
-            Some(vec![1.0, 0.2, 0.0, -3.0, 0.0, 0.0])
-        );
-        let uniform = "internalField   uniform 300;\nboundaryField { }";
-        assert_eq!(internal_field(uniform, 2), Some(vec![300.0, 300.0]));
-        assert_eq!(internal_field("boundaryField { }", 2), None);
-    }
-
-    #[test]
-    fn appended_arrays_of_calcine_are_found_by_their_names() {
-        let mut bytes = b"<VTKFile><DataArray type=\"Float64\" Name=\"points\" offset=\"0\"/>\n\
-            <DataArray type=\"Float64\" Name=\"temperature\" NumberOfComponents=\"1\" format=\"appended\" offset=\"16\"/>\n\
-            <AppendedData encoding=\"raw\">\n_"
-            .to_vec();
-        for number in [8u64.to_le_bytes(), 1f64.to_le_bytes(), 16u64.to_le_bytes()] {
-            bytes.extend(number);
-        }
-        bytes.extend(300.5f64.to_le_bytes());
-        bytes.extend(301f64.to_le_bytes());
-        assert_eq!(appended(&bytes, "temperature"), Some(vec![300.5, 301.0]));
-        assert_eq!(appended(&bytes, "pressure"), None);
-        assert_eq!(appended(&bytes[..bytes.len() - 1], "temperature"), None);
     }
 }

@@ -23,11 +23,11 @@ use std::thread;
 use case::{CoupledGas, ErrorCase, Reference, Resolution};
 use coupled::Done;
 use field::MeanField;
-pub use field::appended;
 use report::ErrorRow;
 
 use crate::measure::Cost;
 use crate::packages::{self, Needs};
+use crate::runs::LOOSE;
 use crate::steps::{Stop, TaskResult, loud_step, say, step};
 use crate::tasks::{self, BuildScope};
 use crate::workspace::{CargoProfile, Workspace};
@@ -81,7 +81,7 @@ const GASES: [(&str, CoupledGas); 6] = [
         "native, loose",
         CoupledGas {
             gas: "native",
-            set: LOOSE,
+            set: &LOOSE,
             longer: 1,
         },
     ),
@@ -105,21 +105,13 @@ const GASES: [(&str, CoupledGas); 6] = [
         "calcineGasFoam, loose",
         CoupledGas {
             gas: "openfoam",
-            set: LOOSE,
+            set: &LOOSE,
             longer: 1,
         },
     ),
 ];
-const LOOSE: &[&str] = &[
-    "gas.controls.outer_tolerance=1e-4",
-    "gas.controls.linear_tolerance=1e-8",
-];
 /// The same in windows of second order, which may be longer.
-const TWO_STAGES: &[&str] = &[
-    "gas.controls.outer_tolerance=1e-4",
-    "gas.controls.linear_tolerance=1e-8",
-    "gas.controls.time_scheme=sdirk2",
-];
+const TWO_STAGES: &[&str] = &[LOOSE[0], LOOSE[1], "gas.controls.time_scheme=sdirk2"];
 const LONGER: u32 = 5;
 
 /// Builds, measures, prints the tables and writes them below the target folder.

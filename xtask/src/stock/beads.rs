@@ -3,12 +3,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::comparison::{Contestant, StockComparison};
-use super::programs::{CalcineRun, LOOSE, OpenFoamRun, Source, fresh};
-use crate::gas_error::appended;
+use super::programs::{CalcineRun, OpenFoamRun, Source, fresh};
 use crate::openfoam::write;
+use crate::runs::LOOSE;
+use crate::snapshots::{self, appended};
 use crate::steps::{Stop, TaskResult, step};
 use crate::table::Table;
 use crate::workspace::Workspace;
@@ -39,11 +40,18 @@ const AT_USUAL_WINDOW: [Pairing; 5] = [
 ];
 
 /// Where beads are at the start, as either program reads it.
-struct Places {
+pub struct Places {
     /// For Calcine.
-    table: PathBuf,
+    pub table: PathBuf,
     /// For OpenFOAM.
-    positions: PathBuf,
+    pub positions: PathBuf,
+}
+
+impl Places {
+    /// What has Calcine's beads begin there.
+    pub fn setting(&self) -> String {
+        format!("particles[0].place={{ file = '{}' }}", self.table.display())
+    }
 }
 
 /// From the tutorial's own start.
@@ -53,7 +61,7 @@ pub fn table(workspace: &Workspace) -> TaskResult<Table> {
 
 /// From the places of fluidised beads, at rest.
 pub fn fluidised(workspace: &Workspace) -> TaskResult<Table> {
-    let places = step("fluidise the beads natively", || places(workspace))?;
+    let places = fluidised_places(workspace)?;
     compared(
         workspace,
         "24 750 fluidised beads in 5400 cells",
@@ -89,10 +97,7 @@ fn compared(
             contestants.push(Contestant::new(name, shown, move |end| {
                 let mut settings = vec![format!("time.motion_window={:.0} us", 1e6 * window)];
                 settings.extend(LOOSE.iter().filter(|_| loose).map(|&word| word.to_owned()));
-                settings.extend(places.map(|places| {
-                    let path = places.table.display().to_string();
-                    format!("particles[0].place={{ file = '{path}' }}")
-                }));
+                settings.extend(places.map(Places::setting));
                 let run = CalcineRun {
                     case: "beads.toml",
                     pairing,
@@ -113,37 +118,35 @@ fn compared(
 }
 
 /// Runs the bed natively until it is fluidised and writes where the beads are then.
-fn places(workspace: &Workspace) -> TaskResult<Places> {
-    let run = CalcineRun {
-        case: "beads.toml",
-        pairing: ["native", "native"],
-        settings: LOOSE.map(str::to_owned).to_vec(),
-        every: None,
-        quantity: "pressure_drop",
-    };
-    let results = run.results(workspace, FLUIDISED)?;
-    let snapshot = last(&results.join("particles"))?;
-    let bytes = fs::read(&snapshot).map_err(|cause| Stop::io(&snapshot, &cause))?;
-    let points = appended(&bytes, "points")
-        .ok_or_else(|| Stop(format!("{}: no points", snapshot.display())))?;
+pub fn fluidised_places(workspace: &Workspace) -> TaskResult<Places> {
+    step("fluidise the beads natively", || {
+        let run = CalcineRun {
+            case: "beads.toml",
+            pairing: NATIVE.0,
+            settings: LOOSE.map(str::to_owned).to_vec(),
+            every: None,
+            quantity: "pressure_drop",
+        };
+        let (_, results) = run.run(workspace, FLUIDISED)?;
+        let snapshot = snapshots::last(&results.join("particles"), "vtp")?;
+        let bytes = fs::read(&snapshot).map_err(|cause| Stop::io(&snapshot, &cause))?;
+        let points = appended(&bytes, "points")
+            .ok_or_else(|| Stop(format!("{}: no points", snapshot.display())))?;
+        written(workspace, &points)
+    })
+}
+
+/// Writes places in m for both programs.
+pub fn written(workspace: &Workspace, points: &[f64]) -> TaskResult<Places> {
     let folder = fresh(workspace, "places")?;
     let places = Places {
         table: folder.join("beads.csv"),
         positions: folder.join("kinematicCloudPositions"),
     };
-    let (table, positions) = texts(&points);
+    let (table, positions) = texts(points);
     write(&places.table, &table)?;
     write(&places.positions, &positions)?;
     Ok(places)
-}
-
-fn last(folder: &Path) -> TaskResult<PathBuf> {
-    let entries = fs::read_dir(folder).map_err(|cause| Stop::io(folder, &cause))?;
-    let paths = entries.flatten().map(|entry| entry.path());
-    let last = paths
-        .filter(|path| path.extension().is_some_and(|ending| ending == "vtp"))
-        .max();
-    last.ok_or_else(|| Stop(format!("{}: no snapshots", folder.display())))
 }
 
 /// Places in m as a table for Calcine and as OpenFOAM's list about its own origin.

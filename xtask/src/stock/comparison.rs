@@ -86,7 +86,7 @@ impl StockComparison {
             contestant.name.clone(),
             contestant.step.to_owned(),
             format!("{}s", short(each)),
-            format!("{:.2}", each / stock),
+            ratio(each / stock),
             format!("{:.0}", whole.cost.memory / 1e6),
             match figure.abs() < 10.0 {
                 true => format!("{figure:.5}"),
@@ -94,6 +94,12 @@ impl StockComparison {
             },
         ])
     }
+}
+
+/// A ratio with two digits that say something.
+fn ratio(number: f64) -> String {
+    let digits = if number.abs() < 0.1 { 3 } else { 2 };
+    format!("{number:.digits$}")
 }
 
 /// Mean of the samples after a time.
@@ -150,6 +156,11 @@ mod tests {
             ["native", "2 ms", "1.00 s", "0.50", "1", "4.50000"]
         );
         assert!(text.contains("over stock's"), "{text}");
+    }
+
+    #[test]
+    fn small_ratios_have_digits_too() {
+        assert_eq!([1.0, 0.128, 0.0193].map(ratio), ["1.00", "0.13", "0.019"]);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Gas through a bed that does not move: pimpleFoam with a porous zone by Ergun's equation, and Calcine with the spheres.
 
 use super::comparison::{Contestant, StockComparison};
-use super::programs::{CalcineRun, LOOSE, OpenFoamRun, Source};
+use super::programs::{CalcineRun, OpenFoamRun, Source};
+use crate::runs::LOOSE;
 use crate::steps::TaskResult;
 use crate::table::Table;
 use crate::workspace::Workspace;

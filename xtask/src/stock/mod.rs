@@ -7,6 +7,7 @@ mod gas;
 mod parcels;
 mod particles;
 mod programs;
+mod still;
 
 use crate::packages::{self, Needs};
 use crate::steps::{TaskResult, say};
@@ -18,9 +19,10 @@ use crate::workspace::Workspace;
 type Measure = fn(&Workspace) -> TaskResult<Table>;
 
 /// The tables by their names.
-const TABLES: [(&str, Measure); 6] = [
+const TABLES: [(&str, Measure); 7] = [
     ("beads", beads::table),
     ("fluidised", beads::fluidised),
+    ("still", still::table),
     ("parcels", parcels::coarse),
     ("parcels-fine", parcels::fine),
     ("particles", particles::table),

@@ -1,7 +1,8 @@
 //! The tutorial MPPICFoam/Goldschmidt: 24 750 parcels in a flat bed, on its own cells and on those of DPMFoam's.
 
 use super::comparison::{Contestant, StockComparison};
-use super::programs::{CalcineRun, LOOSE, OpenFoamRun, Source};
+use super::programs::{CalcineRun, OpenFoamRun, Source};
+use crate::runs::LOOSE;
 use crate::steps::TaskResult;
 use crate::table::Table;
 use crate::workspace::Workspace;

@@ -16,12 +16,6 @@ const TUTORIALS: &str = "/usr/share/doc/openfoam-examples/examples";
 /// Density of the gas in kg/m³: OpenFOAM's pressures are divided by it.
 const GAS_DENSITY: f64 = 1.2;
 
-/// Words for tolerances near those of OpenFOAM's tutorials.
-pub const LOOSE: [&str; 2] = [
-    "gas.controls.outer_tolerance=1e-4",
-    "gas.controls.linear_tolerance=1e-8",
-];
-
 /// A folder below `of-cases/goldschmidt`, or a file in it.
 pub fn files(workspace: &Workspace, name: &str) -> PathBuf {
     workspace.root.join("of-cases/goldschmidt").join(name)
@@ -58,20 +52,20 @@ pub struct CalcineRun<'a> {
 impl CalcineRun<'_> {
     /// Runs it to a time in s on one core.
     pub fn to(&self, workspace: &Workspace, end: f64) -> TaskResult<Run> {
-        let (cost, results) = self.run(workspace, end)?;
+        Ok(self.run(workspace, end)?.0)
+    }
+
+    /// The same with the folder of its results; the next run takes its place.
+    pub fn run(&self, workspace: &Workspace, end: f64) -> TaskResult<(Run, PathBuf)> {
+        let (cost, results) = self.start(workspace, end)?;
         let series = results.join("series.csv");
         let text = fs::read_to_string(&series).map_err(|cause| Stop::io(&series, &cause))?;
         let samples = column(&text, self.quantity)
             .ok_or_else(|| Stop(format!("{}: no {}", series.display(), self.quantity)))?;
-        Ok(Run { cost, samples })
+        Ok((Run { cost, samples }, results))
     }
 
-    /// The folder of its results after a time in s; the next run takes their place.
-    pub fn results(&self, workspace: &Workspace, end: f64) -> TaskResult<PathBuf> {
-        Ok(self.run(workspace, end)?.1)
-    }
-
-    fn run(&self, workspace: &Workspace, end: f64) -> TaskResult<(Cost, PathBuf)> {
+    fn start(&self, workspace: &Workspace, end: f64) -> TaskResult<(Cost, PathBuf)> {
         let folder = fresh(workspace, "calcine")?;
         let mut settings = self.settings.clone();
         settings.push(format!("time.end={} us", micro(end)));
@@ -141,6 +135,11 @@ pub struct OpenFoamRun {
 impl OpenFoamRun {
     /// Runs it to a time in s on one core; its figure is the mean pressure at the bottom in Pa above the top's.
     pub fn to(&self, workspace: &Workspace, end: f64) -> TaskResult<Run> {
+        Ok(self.run(workspace, end)?.0)
+    }
+
+    /// The same with the folder of the case; the next run takes its place.
+    pub fn run(&self, workspace: &Workspace, end: f64) -> TaskResult<(Run, PathBuf)> {
         let folder = fresh(workspace, "openfoam")?;
         let from = match self.source {
             Source::Tutorial(name) => Path::new(TUTORIALS).join(name),
@@ -173,8 +172,9 @@ impl OpenFoamRun {
         let cost = ended(measured(&tool(&folder, &[self.solver]), &log)?, &log)?;
         let told = folder.join("postProcessing/drop/0/surfaceFieldValue.dat");
         let text = fs::read_to_string(&told).map_err(|cause| Stop::io(&told, &cause))?;
-        let samples = pressures(&text).ok_or_else(|| Stop(format!("{}: ?", told.display())))?;
-        Ok(Run { cost, samples })
+        let samples = pressures(&text)
+            .ok_or_else(|| Stop(format!("{}: not times and pressures", told.display())))?;
+        Ok((Run { cost, samples }, folder))
     }
 }
 
@@ -192,7 +192,7 @@ fn change(path: &Path, how: impl Fn(String) -> Option<String>) -> TaskResult<()>
 /// What goes behind a `controlDict`: of entries that are there twice OpenFOAM takes the last. Only the last step is written.
 fn controls(step: f64, end: f64) -> String {
     format!(
-        "\nendTime {end:?};\ndeltaT {step:?};\nwriteControl runTime;\nwriteInterval {end:?};\nrunTimeModifiable no;\n\
+        "\nendTime {end:?};\ndeltaT {step:?};\nwriteControl runTime;\nwriteInterval {end:?};\nwriteFormat ascii;\nrunTimeModifiable no;\n\
          functions\n{{\n    drop\n    {{\n        type surfaceFieldValue;\n        libs (fieldFunctionObjects);\n        \
          writeFields no;\n        log no;\n        regionType patch;\n        name bottom;\n        operation areaAverage;\n        \
          fields (p);\n        writeControl timeStep;\n        writeInterval 1;\n    }}\n}}\n"
