@@ -191,3 +191,34 @@ fn check_and_prepare_say_what_a_script_is_and_where_it_does_not_go_with_the_case
     assert_eq!(output.status.code(), Some(4), "{text}");
     assert!(text.contains("line 17, `fix g all gravity 1.62"), "{text}");
 }
+
+/// In place of `mpirun`: takes the line by which the host adds the force of the gas out of the script, as in that of another version.
+const OTHER_VERSION: &str =
+    "#!/bin/sh\nsed -i '/^fix calcine_each_step /d' in.liggghts\nexec \"$@\"\n";
+
+#[test]
+fn a_script_in_which_the_force_of_the_gas_would_not_act_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    case(folder.path(), &shipped());
+    let launcher = folder.path().join("launch.sh");
+    fs::write(&launcher, OTHER_VERSION).unwrap();
+    let launcher = format!("sh {}", launcher.display());
+    let words = [
+        "run",
+        "case.toml",
+        "--particles",
+        "liggghts",
+        "--out",
+        "out",
+    ];
+    let words = [&words[..], &["--launch-particles", &launcher]].concat();
+    let output = calcine(folder.path(), &words);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{text}");
+    for part in [
+        "fix calcine_each_step",
+        "install `calcine` and `calcine-liggghts` together",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+}
