@@ -201,7 +201,7 @@ fn thiele(
         material.density * start.get(s).copied().unwrap_or_default()
             / case.chemistry.solids[s].molar_mass()
     };
-    let (solid, _) = reaction.solids.iter().find(|one| one.1 < 0.0)?;
+    let solid = reaction.solids.iter().find(|one| one.1 < 0.0);
     let powers = |orders: &[(usize, f64)]| -> f64 {
         let each = orders.iter().map(|&(g, n)| (fractions[g] * moles).powf(n));
         each.product()
@@ -212,7 +212,7 @@ fn thiele(
             rate_constant,
             conversion,
             gases,
-        } => rate_constant.at(kelvin) * of_solid(*solid) * conversion.of(1.0)[0] * powers(gases),
+        } => rate_constant.at(kelvin) * of_solid(solid?.0) * conversion.of(1.0)[0] * powers(gases),
         Rate::Power(law) => {
             let solids = law.solids.iter().map(|&(s, n)| of_solid(s).powf(n));
             law.rate_constant.at(kelvin) * solids.product::<f64>() * powers(&law.gases)
@@ -221,7 +221,8 @@ fn thiele(
             rate_constant,
             grains,
         } => {
-            let volume = material.density * start.get(*solid)? / true_density.get(*solid)?;
+            let &(s, _) = solid?;
+            let volume = material.density * start.get(s)? / true_density.get(s)?;
             let lacking = 1e5 / reaction.equilibrium.inverse(kelvin).max(f64::MIN_POSITIVE);
             rate_constant.at(kelvin) * grains.at_start(volume) * lacking
         }

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use calcine_interior::radial::{
-    PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid, ShellResolution,
+    PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrading, ShellGrid, ShellResolution,
 };
 use calcine_interior::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use calcine_interior::{
@@ -68,7 +68,7 @@ fn stones(radius: f64, count: u64) -> Radial {
         resolution: ShellResolution::All,
         ..RadialNumerics::new(ShellGrid {
             shells: SHELLS,
-            grading: 2.0,
+            grading: ShellGrading::Ratio(2.0),
         })
     };
     let mut made = Radial::new(chemistry, &[1.0, 0.0], solid, pores, numerics).unwrap();

@@ -24,9 +24,14 @@ const SIZE: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const GRADING: &[Key] = &[
+    key("thiele", Number(D::NONE, Between(1.0, 1000.0)), Required, "Thiele number R sqrt(k/D) of a layer in which concentrations fall as exp(-thiele s/R) at the depth s: shells get thicker as exp(thiele s/(2 R)), an eleventh of them evenly.", "30"),
+];
+
+#[rustfmt::skip]
 const RADIAL: &[Key] = &[
     key("shells", Whole(3, 1000), Default("30"), "Number of shells.", "40"),
-    key("grading", Number(D::NONE, Between(1.0, 1000.0)), Default("4"), "How many times as thick as the outermost shell the innermost one is.", "10"),
+    key("grading", Either(&Number(D::NONE, Between(1.0, 1000.0)), &Table(GRADING)), Default("4"), "How many times as thick as the outermost shell the innermost one is, or the layer below the surface that shells are to resolve.", "10"),
     key("true_densities", ByName(D::DENSITY), Without("required where reactions exchange gas"), "Density of each solid itself, without pores, that the particles hold or come to hold; what they leave of the volume are the pores.", "{ CaCO3 = \"2711 kg/m^3\", CaO = \"3340 kg/m^3\" }"),
     key("pore_diameter", Number(D::LENGTH, Positive), Without("required where reactions exchange gas"), "Diameter of the pores, by which molecules meet their walls.", "\"1 um\""),
     key("tortuosity", Number(D::NONE, AtLeast(1.0)), Without("required where reactions exchange gas"), "Tortuosity t: gases diffuse by the porosity over t.", "2"),

@@ -76,25 +76,29 @@ fn every_example_is_toml_and_every_default_a_value_of_its_key() {
         let KeyPresence::Default(text) = placed.key.presence else {
             continue;
         };
-        let sound = match placed.key.value {
-            KeyValue::Number(dimension, bound) => {
-                let found = crate::case::units::quantities(text).unwrap();
-                found.1 == dimension && bound.holds(found.0[0])
-            }
-            KeyValue::Vector(dimension) => {
-                let found = crate::case::units::quantities(text).unwrap();
-                found.1 == dimension && found.0.len() == 3
-            }
-            KeyValue::Schedule(..) => parse_number(text).is_some(),
-            KeyValue::Whole(least, most) => (least..=most).contains(&text.parse().unwrap()),
-            KeyValue::Truth => ["true", "false"].contains(&text),
-            value => {
-                let forms = value.alternatives(&laws).into_iter();
-                let mut words = forms.flat_map(|one| one.choices(&laws));
-                words.any(|word| word == text)
-            }
-        };
+        let sound = allows(placed.key.value, text, &laws);
         assert!(sound, "{}: {text}", placed.place);
+    }
+}
+
+/// Whether a text is a value of a key.
+fn allows(value: KeyValue, text: &str, laws: &LawCatalogue) -> bool {
+    match value {
+        KeyValue::Number(dimension, bound) => crate::case::units::quantities(text)
+            .is_ok_and(|found| found.1 == dimension && bound.holds(found.0[0])),
+        KeyValue::Vector(dimension) => crate::case::units::quantities(text)
+            .is_ok_and(|found| found.1 == dimension && found.0.len() == 3),
+        KeyValue::Schedule(..) => parse_number(text).is_some(),
+        KeyValue::Whole(least, most) => text.parse().is_ok_and(|n| (least..=most).contains(&n)),
+        KeyValue::Truth => ["true", "false"].contains(&text),
+        KeyValue::Either(one, other) => {
+            allows(*one, text, laws) || allows(*other, text, laws)
+        }
+        value => {
+            let forms = value.alternatives(laws).into_iter();
+            let mut words = forms.flat_map(|one| one.choices(laws));
+            words.any(|word| word == text)
+        }
     }
 }
 

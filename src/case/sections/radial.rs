@@ -1,6 +1,6 @@
 //! `materials.NAME.inside` and `.radial`: particles resolved along their radius.
 
-use calcine_coupler::interior::radial::ShellGrid;
+use calcine_coupler::interior::radial::{ShellGrading, ShellGrid};
 use calcine_coupler::interior::reacting::{Rate, Reaction};
 use calcine_coupler::physics::pores::PorousConductivity;
 use calcine_coupler::physics::solids::SolidSpecies;
@@ -19,7 +19,7 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> (Insi
     let nothing = RadialSpec {
         grid: ShellGrid {
             shells: 30,
-            grading: 4.0,
+            grading: ShellGrading::Ratio(4.0),
         },
         true_densities: Vec::new(),
         pore_diameter: None,
@@ -38,7 +38,7 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> (Insi
     let made = RadialSpec {
         grid: ShellGrid {
             shells: usize::try_from(shells).unwrap_or(30),
-            grading: number("grading"),
+            grading: grading(&table),
         },
         true_densities: match table.has("true_densities") {
             true => densities(&table, "true_densities", solids).unwrap_or_default(),
@@ -54,6 +54,19 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> (Insi
     };
     table.finish();
     (inside, made)
+}
+
+/// How shells get thinner towards the surface: a ratio, or a table with a Thiele number.
+fn grading(table: &TableReader<'_>) -> ShellGrading {
+    if !table.is_table("grading") {
+        return ShellGrading::Ratio(table.number("grading").unwrap_or(f64::NAN));
+    }
+    let number = table.table("grading").and_then(|inner| {
+        let number = inner.number("thiele");
+        inner.finish();
+        number
+    });
+    ShellGrading::Thiele(number.unwrap_or(f64::NAN))
 }
 
 /// The law that a table below names.

@@ -114,12 +114,23 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
             return None;
         }
     }
+    if made.solids.is_empty() && !has_catalyst(&made.rate) {
+        let help = "reactions among gases alone go into [gas.chemistry]; one on a catalyst goes by law = \"power-law\", with an order above zero of its \
+                    solid, such as orders = { CO = 1, Fe3O4 = 1 }";
+        table.fail("equation", "has no solid, and no catalyst", help);
+        return None;
+    }
     let names = known.gas.map_or(&[][..], |gas| gas.names());
     if !drying::suits(table, &made, known.solids, names) {
         return None;
     }
     heat.is_none_or(|heat| agrees(table, heat, &made, known))
         .then_some(made)
+}
+
+/// True where a rate follows the amount of a solid, which catalyses a reaction of gases alone.
+fn has_catalyst(rate: &Rate) -> bool {
+    matches!(rate, Rate::Power(law) if law.solids.iter().any(|solid| solid.1 > 0.0))
 }
 
 /// Solids and gases of an equation with what a mole of the reaction makes of each.
@@ -169,11 +180,6 @@ fn equation(table: &TableReader<'_>, text: &str, known: &Known<'_>) -> Option<(E
         }
     }
     balanced(table, &parts, known)?;
-    if parts.solids.is_empty() {
-        let help = "reactions among gases alone go into [gas.chemistry]";
-        table.fail("equation", "has no solid", help);
-        return None;
-    }
     let last = known.gas.map_or(0, |gas| gas.names().len()).wrapping_sub(1);
     if parts.gases.iter().any(|gas| gas.0 == last) {
         let name = known.gas.map_or("", |gas| &gas.names()[last]);

@@ -10,30 +10,76 @@ use calcine_physics::sphere;
 pub struct ShellGrid {
     /// Number of shells.
     pub shells: usize,
-    /// How many times as thick as the outermost shell the innermost one is; the thicknesses follow a geometric series.
-    pub grading: f64,
+    /// How their thicknesses follow from each other.
+    pub grading: ShellGrading,
+}
+
+/// How shells get thinner towards the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShellGrading {
+    /// A geometric series; how many times as thick as the outermost shell the innermost one is.
+    Ratio(f64),
+    /// For a layer below the surface in which concentrations fall as exp(-φ s/R) at the depth s, by its Thiele number φ. Shells of second
+    /// order have errors of h² exp(-φ s/R), which are alike where they get thicker as exp(φ s/(2 R)); an eleventh of the shells lies
+    /// evenly along the radius.
+    Thiele(f64),
 }
 
 impl ShellGrid {
     /// The share of each shell in the volume, from the centre outwards.
     pub fn shares(&self) -> Vec<f64> {
-        let last = (self.shells.max(2) - 1) as f64;
-        let ratio = self.grading.powf(-1.0 / last);
-        let thickness: Vec<f64> = (0..self.shells).map(|k| ratio.powi(k as i32)).collect();
-        let all: f64 = thickness.iter().sum();
         let mut inner = 0.0;
-        let mut shares: Vec<f64> = Vec::with_capacity(self.shells);
-        for (k, own) in thickness.iter().enumerate() {
-            let outer: f64 = if k + 1 == self.shells {
-                1.0
-            } else {
-                inner + own / all
-            };
-            shares.push(outer.powi(3) - f64::powi(inner, 3));
+        let share = |outer: f64| {
+            let share = outer.powi(3) - f64::powi(inner, 3);
             inner = outer;
-        }
-        shares
+            share
+        };
+        self.faces().into_iter().map(share).collect()
     }
+
+    /// Outer face of each shell over the radius of the surface, from the centre outwards.
+    fn faces(&self) -> Vec<f64> {
+        let last = self.shells.saturating_sub(1);
+        let mut faces: Vec<f64> = match self.grading {
+            ShellGrading::Ratio(grading) => {
+                let ratio = grading.powf(-1.0 / last.max(1) as f64);
+                let thickness = (0..self.shells).map(|k| ratio.powi(k as i32));
+                let all: f64 = thickness.clone().sum();
+                let mut inner = 0.0;
+                let outer = |own: f64| {
+                    inner += own / all;
+                    inner
+                };
+                thickness.map(outer).collect()
+            }
+            ShellGrading::Thiele(number) => {
+                let outside = |k: usize| (last - k) as f64 / self.shells as f64;
+                let face = |k| 1.0 - depth(number, outside(k));
+                (0..self.shells).map(face).collect()
+            }
+        };
+        if let Some(surface) = faces.last_mut() {
+            *surface = 1.0;
+        }
+        faces
+    }
+}
+
+/// Depth below the surface, over the radius, outside of which a share of the shells lies: their density is exp(-φ s/2) + 0.2/φ, found by
+/// bisection.
+fn depth(thiele: f64, share: f64) -> f64 {
+    let outside = |s: f64| (1.0 - (-0.5 * thiele * s).exp()) * 2.0 + 0.2 * s;
+    let sought = share * outside(1.0);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..f64::MANTISSA_DIGITS {
+        let middle = 0.5 * (low + high);
+        if outside(middle) < sought {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// Where the shells of a particle lie.
@@ -121,7 +167,7 @@ mod tests {
     fn shares_fill_the_sphere_and_are_graded_as_asked() {
         let grid = ShellGrid {
             shells: 20,
-            grading: 4.0,
+            grading: ShellGrading::Ratio(4.0),
         };
         let shares: [f64; 20] = grid.shares().try_into().unwrap();
         assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-15);
@@ -135,6 +181,27 @@ mod tests {
         assert!((thick(0) / thick(19) - 4.0).abs() < 1e-9);
         let squares = mean_squares(&shares).into_iter().zip(shares);
         assert!((squares.map(|(square, share)| square * share).sum::<f64>() - 0.6).abs() < 1e-14);
+    }
+
+    #[test]
+    fn shells_by_a_thiele_number_lie_in_its_layer() {
+        for number in [1.0, 30.0, 1000.0] {
+            let grid = ShellGrid {
+                shells: 40,
+                grading: ShellGrading::Thiele(number),
+            };
+            let faces = grid.faces();
+            assert_eq!(faces[39], 1.0);
+            let thick = |k: usize| faces[k] - if k == 0 { 0.0 } else { faces[k - 1] };
+            assert!((1..40).all(|k| thick(k) < thick(k - 1) && thick(k) > 0.0));
+            // Within s = 4/φ are 1 - exp(-2) of the ten elevenths and 4/φ of the eleventh.
+            if number > 4.0 {
+                let depth = 4.0 / number;
+                let layer = faces.iter().filter(|face| **face > 1.0 - depth).count() as f64;
+                let share = ((1.0 - f64::exp(-2.0)) * 2.0 + 0.2 * depth) / (2.0 + 0.2);
+                assert!((layer - 40.0 * share).abs() <= 1.0, "{number}: {layer}");
+            }
+        }
     }
 
     #[test]

@@ -31,7 +31,7 @@ mod transport;
 mod workspace;
 
 pub use attempt::RadialStalled;
-pub use grid::ShellGrid;
+pub use grid::{ShellGrading, ShellGrid};
 pub use material::{PoreGas, PorousSolid, RadialNumerics, ShellResolution};
 pub use physics::RadialError;
 

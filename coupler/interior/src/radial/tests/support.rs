@@ -10,7 +10,7 @@ use calcine_physics::sphere;
 use calcine_physics::thermo::Mixture;
 
 use crate::model::{GasLines, NetworkHeat, Newcomer, ParticleModel, Surroundings, Transfer};
-use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid, ShellResolution};
+use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrading, ShellGrid, ShellResolution};
 use crate::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use crate::thin::TEMPERATURE;
 
@@ -128,7 +128,7 @@ pub fn attempt_off(
 pub fn grid(shells: usize) -> ShellGrid {
     ShellGrid {
         shells,
-        grading: 1.0,
+        grading: ShellGrading::Ratio(1.0),
     }
 }
 
