@@ -91,9 +91,7 @@ fn allows(value: KeyValue, text: &str, laws: &LawCatalogue) -> bool {
         KeyValue::Schedule(..) => parse_number(text).is_some(),
         KeyValue::Whole(least, most) => text.parse().is_ok_and(|n| (least..=most).contains(&n)),
         KeyValue::Truth => ["true", "false"].contains(&text),
-        KeyValue::Either(one, other) => {
-            allows(*one, text, laws) || allows(*other, text, laws)
-        }
+        KeyValue::Either(one, other) => allows(*one, text, laws) || allows(*other, text, laws),
         value => {
             let forms = value.alternatives(laws).into_iter();
             let mut words = forms.flat_map(|one| one.choices(laws));

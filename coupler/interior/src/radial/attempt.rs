@@ -347,7 +347,9 @@ impl RadialPhysics {
     /// True where no shell has less than nothing of a solid or a gas.
     fn is_positive(&self, lane: usize, ws: &RadialWorkspace) -> bool {
         let g = ws.gases;
-        let solids = ws.now.amount.iter().all(|n| n[lane] >= 0.0);
+        // What is used up halves down to the least number that there is, and may be that below nothing.
+        let mut amounts = ws.now.amount.iter();
+        let solids = amounts.all(|n| n[lane] >= -f64::MIN_POSITIVE);
         let gases = ws.now_gas.chunks_exact(g.max(1)).all(|own| {
             let all: f64 = own.iter().map(|n| n[lane]).sum();
             own.iter().all(|n| n[lane] >= -ROUND_OFF * all)
@@ -431,13 +433,14 @@ impl RadialPhysics {
                 let pairs = (0..block).map(|j| inside[i * block + j][lane] * at_surface[j]);
                 within[i] = -pairs.sum::<f64>();
             }
-            let carried = through.carried(face, k, ws);
-            let mut flow = carried.own_here[lane] * within[1 + k]
-                + carried.own_there[lane] * at_surface[1 + k];
+            let carried = through.carried::<ANY>(face, k, ws);
+            let diffusion = ws.held.diffusion[face * g + k][lane];
+            let mut flow = (diffusion + carried.own_here[lane]) * within[1 + k]
+                + (carried.own_there[lane] - diffusion) * at_surface[1 + k];
             for j in 0..g {
-                let diffusive = ws.held.diffusion[(face * g + k) * g + j][lane];
-                flow += (diffusive + carried.by_here[lane]) * within[1 + j]
-                    + (carried.by_there[lane] - diffusive) * at_surface[1 + j];
+                let dragged = (ws.held.drag[(face * g + k) * g + j] * carried.fraction)[lane];
+                flow += (dragged + carried.by_here[lane]) * within[1 + j]
+                    + (carried.by_there[lane] - dragged) * at_surface[1 + j];
             }
             out.flow_slope[k] = flow;
         }

@@ -169,9 +169,9 @@ impl RadialPhysics {
             ws.held.pores[shell] * ws.now.temperature[shell].inverse() * (1.0 / GAS_CONSTANT);
         let mut all = ShellStores::default();
         for (k, own) in all.gas.iter_mut().enumerate().take(g) {
-            let mut passes = ws.held.diffusion[(shell * g + k) * g + k];
+            let mut passes = ws.held.diffusion[shell * g + k];
             if shell > 0 {
-                passes += ws.held.diffusion[((shell - 1) * g + k) * g + k];
+                passes += ws.held.diffusion[(shell - 1) * g + k];
             }
             *own = per_pascal + ws.length * passes;
         }
@@ -261,12 +261,10 @@ impl RadialPhysics {
         };
         let rest = -share + 1.0;
         for k in 0..g {
-            let carried = through.carried(face, k, ws);
-            let mut flow = carried.flow;
-            for j in 0..g {
-                let drop = ws.now.pressure[face * g + j] - ws.now.pressure[(face + 1) * g + j];
-                flow += ws.held.diffusion[(face * g + k) * g + j] * drop;
-            }
+            let carried = through.carried::<G>(face, k, ws);
+            let diffusion = ws.held.diffusion[face * g + k];
+            let drop = ws.now.pressure[face * g + k] - ws.now.pressure[(face + 1) * g + k];
+            let flow = diffusion * drop + carried.flow;
             ws.flows.gas[face * g + k] = flow;
             ws.right[face * block + 1 + k] -= length * flow;
             ws.right[(face + 1) * block + 1 + k] += beyond * flow;
@@ -283,12 +281,11 @@ impl RadialPhysics {
                 ws.entries[outer(0, 0, 0)] -= share * brings[0];
             }
             for j in 0..g {
-                let diffusive = ws.held.diffusion[(face * g + k) * g + j];
-                let (mut here, mut there) =
-                    (diffusive + carried.by_here, carried.by_there - diffusive);
+                let dragged = ws.held.drag[(face * g + k) * g + j] * carried.fraction;
+                let (mut here, mut there) = (dragged + carried.by_here, carried.by_there - dragged);
                 if j == k {
-                    here += carried.own_here;
-                    there += carried.own_there;
+                    here += diffusion + carried.own_here;
+                    there += carried.own_there - diffusion;
                 }
                 ws.entries[inner(1, 1 + k, 1 + j)] += length * here;
                 ws.entries[inner(2, 1 + k, 1 + j)] += length * there;
@@ -354,10 +351,12 @@ pub(super) struct FaceFlow {
     square: Wide,
 }
 
-/// What of a gas flows through a face by pressure in mol/s; its changes with the pressures of all gases alike inside and outside, and
-/// what comes on top with that of its own.
+/// What is carried of a gas through a face in mol/s, by the flow by pressure and by the drag of the other gases, and its mole fraction between
+/// both nodes; its changes with the pressures of all gases alike inside and outside but for the drag's, and what comes on top with that of
+/// its own.
 pub(super) struct CarriedGas {
     pub flow: Wide,
+    pub fraction: Wide,
     pub by_here: Wide,
     pub by_there: Wide,
     pub own_here: Wide,
@@ -380,20 +379,31 @@ impl FaceFlow {
         }
     }
 
-    /// F (p_i² − p_o²)/2 x with the mole fraction x of a gas between both nodes.
+    /// (F (p_i² − p_o²)/2 + Σ_k d_k Δp_k) x with the mole fraction x of a gas between both nodes.
     #[inline(always)]
-    pub fn carried(&self, face: usize, gas: usize, ws: &RadialWorkspace) -> CarriedGas {
-        let g = ws.gases;
+    pub fn carried<const G: usize>(
+        &self,
+        face: usize,
+        gas: usize,
+        ws: &RadialWorkspace,
+    ) -> CarriedGas {
+        let g = if G == ANY { ws.gases } else { G };
         let weight = ws.held.share[face * g + gas];
         let rest = -weight + 1.0;
         let one = ws.now.pressure[face * g + gas] * self.over[0];
         let other = ws.now.pressure[(face + 1) * g + gas] * self.over[1];
         let fraction = weight * one + rest * other;
         let flow = ws.held.flow[face];
-        let own_here = flow * self.square * weight * self.over[0];
-        let own_there = flow * self.square * rest * self.over[1];
+        let mut all = flow * self.square;
+        for j in 0..g {
+            let drop = ws.now.pressure[face * g + j] - ws.now.pressure[(face + 1) * g + j];
+            all += ws.held.drag[(face * g + gas) * g + j] * drop;
+        }
+        let own_here = all * weight * self.over[0];
+        let own_there = all * rest * self.over[1];
         CarriedGas {
-            flow: flow * self.square * fraction,
+            flow: all * fraction,
+            fraction,
             by_here: flow * self.ends[0] * fraction - own_here * one,
             by_there: -(flow * self.ends[1] * fraction) - own_there * other,
             own_here,

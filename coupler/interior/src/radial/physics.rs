@@ -101,6 +101,8 @@ pub(super) struct RadialPhysics {
     /// Moles of each gas that each reaction makes, reaction by reaction, and the orders of the gases on its way back.
     pub gas_moles: Vec<f64>,
     pub behind: Vec<Vec<(usize, f64)>>,
+    /// Gases that each reaction uses and does not follow.
+    pub ends_with: Vec<Vec<usize>>,
     /// Moles of gases that each reaction makes, in all.
     pub net_gas: Vec<f64>,
     /// Change of the pores' volume in m³/mol of each reaction.
@@ -178,7 +180,7 @@ impl RadialPhysics {
             let own = reaction.gases.iter().filter(|one| one.0 == g);
             own.map(|one| one.1).sum()
         };
-        let (mut gas_moles, mut behind) = (Vec::new(), Vec::new());
+        let (mut gas_moles, mut behind, mut ends_with) = (Vec::new(), Vec::new(), Vec::new());
         let mut solid_moles = vec![0.0; chemistry.reactions.len() * chemistry.solids.len()];
         for (j, reaction) in chemistry.reactions.iter().enumerate() {
             for &(k, moles) in &reaction.solids {
@@ -190,14 +192,13 @@ impl RadialPhysics {
                 Rate::Power(law) => &law.gases,
                 _ => &[],
             };
-            let sums = (0..gases).map(|g| {
-                let order: f64 = orders
-                    .iter()
-                    .filter(|one| one.0 == g)
-                    .map(|one| one.1)
-                    .sum();
-                (g, order + moles_of(reaction, g))
-            });
+            let order_of = |g: usize| -> f64 {
+                let own = orders.iter().filter(|one| one.0 == g);
+                own.map(|one| one.1).sum()
+            };
+            let ends = (0..gases).filter(|g| order_of(*g) == 0.0 && moles_of(reaction, *g) < 0.0);
+            ends_with.push(ends.collect());
+            let sums = (0..gases).map(|g| (g, order_of(g) + moles_of(reaction, g)));
             behind.push(sums.filter(|one| one.1 != 0.0).collect());
         }
         let net = |gases: &[(usize, f64)]| gases.iter().map(|one| one.1).sum();
@@ -207,6 +208,7 @@ impl RadialPhysics {
             solid_moles,
             gas_moles,
             behind,
+            ends_with,
             shares: numerics.grid.shares(),
             least_volume: match &solid.size {
                 crate::reacting::SizeChange::Constant => 0.0,

@@ -15,6 +15,9 @@ use crate::reacting::{Rate, Reaction};
 /// needs as much of its products: x (2 − x) of the rate, x in traces, as [`crate::reacting::rates::TRACE`].
 pub(super) const TRACE: f64 = 1e-4;
 
+/// Partial pressure in Pa of a gas below which a reaction that uses it and does not follow it ends: x (2 − x) of the rate, x in these.
+const TRACE_PRESSURE: f64 = 1e-3;
+
 /// The shells of a place in all lanes, as rates see them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShellState<'a> {
@@ -161,6 +164,18 @@ impl RadialPhysics {
             for (own, by) in out.by_pressure.iter_mut().zip(behind.by_pressure) {
                 *own -= scale * by;
             }
+        }
+        for &g in &self.ends_with[index] {
+            let one = Wide::all(1.0);
+            let x = (state.pressures[g].positive() * (1.0 / TRACE_PRESSURE)).min(one);
+            let rest = one - x;
+            let there = x * (rest + 1.0);
+            drive[1] = drive[1] * there;
+            for by in &mut out.by_pressure {
+                *by = *by * there;
+            }
+            out.by_pressure[g] += drive[0] * rest * (2.0 / TRACE_PRESSURE);
+            drive[0] = drive[0] * there;
         }
         let backwards = reverse && drive[0].any(|drive| drive < 0.0);
         let solid = match &reaction.rate {

@@ -196,12 +196,14 @@ impl RadialPhysics {
         let kelvin = (now.temperature[face] + now.temperature[face + 1]) * 0.5;
         let (mut pressures, mut fractions) =
             ([Wide::default(); MOST_GASES], [Wide::default(); MOST_GASES]);
+        let mut drops = [Wide::default(); MOST_GASES];
         let (mut pressure, mut drop) = (Wide::default(), Wide::default());
         for (k, mean) in pressures[..g].iter_mut().enumerate() {
             let ends = [now.pressure[face * g + k], now.pressure[(face + 1) * g + k]];
             *mean = ((ends[0] + ends[1]) * 0.5).positive();
             pressure += *mean;
-            drop += ends[0] - ends[1];
+            drops[k] = ends[0] - ends[1];
+            drop += drops[k];
         }
         let over = pressure.inverse();
         let mut walls = [Wide::default(); MOST_GASES];
@@ -216,13 +218,21 @@ impl RadialPhysics {
         let scale = warmer * half * half.sqrt() * over * PAIR_PRESSURE;
         let matrix = &mut matrix[..g * g];
         let pair = |i: usize, j: usize| scale * self.pairs[i * g + j];
-        DustyGas.fill(&fractions[..g], &walls[..g], pair, kelvin, matrix);
+        let (fractions, walls) = (&fractions[..g], &walls[..g]);
+        let mut own = [Wide::default(); MOST_GASES];
+        DustyGas.fill(fractions, walls, pair, kelvin, matrix);
+        DustyGas.part(fractions, walls, pair, kelvin, matrix, &mut own);
         let [here, there] = [held.porosity[face], held.porosity[next]];
         let paths = area / ((inside / here + beyond / there) * self.solid.tortuosity);
         for (k, entry) in matrix.iter_mut().enumerate() {
             *entry = *entry * paths;
             *broken += *entry * 0.0;
-            renew(mask, &mut held.diffusion[face * g * g + k], *entry);
+            renew(mask, &mut held.drag[face * g * g + k], *entry);
+        }
+        for (k, own) in own[..g].iter_mut().enumerate() {
+            *own = *own * paths;
+            *broken += *own * 0.0;
+            renew(mask, &mut held.diffusion[face * g + k], *own);
         }
         let through = |porosity: Wide| porosity.map(|own| self.solid.permeability.of(own));
         let permeable = area / (inside / through(here) + beyond / through(there));
@@ -230,9 +240,15 @@ impl RadialPhysics {
         let flow = permeable / (viscosity * kelvin * GAS_CONSTANT);
         renew(mask, &mut held.flow[face], flow);
         *broken += flow * 0.0;
+        // The lower one of both pressures: no flow then follows the pressure of its gas where it goes.
+        let lower = pressure - drop.abs() * 0.5;
         let mut carried = Wide::default();
         for k in 0..g {
-            let number = flow * drop * pressure / matrix[k * g + k];
+            let mut all = flow * drop * pressure;
+            for (drag, drop) in matrix[k * g..(k + 1) * g].iter().zip(&drops) {
+                all += *drag * *drop;
+            }
+            let number = all / (own[k] * lower);
             renew(mask, &mut held.share[face * g + k], inner_share(number));
             carried += flows.gas[face * g + k] * gas_capacity[face * g + k];
         }
@@ -269,7 +285,10 @@ impl RadialPhysics {
         for k in 0..g {
             let coefficient = around.film[k].of(kelvin) / shrinkage;
             held.film[k][lane] = held.geometry.area[n - 1][lane] * moles * coefficient;
-            best = best.max(held.diffusion[((n - 1) * g + k) * g + k][lane]);
+            let face = (n - 1) * g + k;
+            let fraction = (now.pressure[n * g + k][lane] / around.pressure).clamp(0.0, 1.0);
+            let drag = held.drag[face * g + k][lane];
+            best = best.max(held.diffusion[face][lane] + fraction * drag);
             carried += flows.film[k][lane] * gas_capacity[n * g + k][lane];
         }
         held.opening[lane] = OPENING * (held.flow[n - 1][lane] * around.pressure + best);

@@ -45,8 +45,10 @@ pub(super) struct Coefficients {
     /// Of the outer face of each shell: W/K; the share of the inner node in the enthalpy that passes.
     pub conductance: Vec<Wide>,
     pub heat_share: Vec<Wide>,
-    /// Diffusive flows in mol/s/Pa, matrix by matrix, and those by pressure in mol/s/Pa².
+    /// Diffusive flow of each gas by its own pressure in mol/s/Pa; what the others drag along of it, over its mole fraction, by the pressure of
+    /// each, matrix by matrix; and flow by pressure in mol/s/Pa².
     pub diffusion: Vec<Wide>,
+    pub drag: Vec<Wide>,
     pub flow: Vec<Wide>,
     /// Share of the inner node in the pressure of each gas that is carried.
     pub share: Vec<Wide>,
@@ -164,7 +166,8 @@ impl RadialWorkspace {
                 conductivity: vec![Wide::default(); nodes],
                 conductance: vec![Wide::default(); shells],
                 heat_share: vec![Wide::default(); shells],
-                diffusion: vec![Wide::default(); shells * gases * gases],
+                diffusion: vec![Wide::default(); shells * gases],
+                drag: vec![Wide::default(); shells * gases * gases],
                 flow: vec![Wide::default(); shells],
                 share: vec![Wide::default(); shells * gases],
                 film: vec![Wide::default(); gases],

@@ -75,6 +75,44 @@ impl DustyGas {
             *value = *value * scale;
         }
     }
+
+    /// Parts such a matrix into what a gas does by itself and by the others that drag it along: n_i = −ψ (a_i ∂p_i + x_i Σ_k d_ik ∂p_k) with
+    /// a_i = 1/(R T (1/D_K,i + Σ_j x_j/D_ij)). The drag has the form of convection, x_i times what all gases do, and stays finite where
+    /// there is none of a gas. The matrix becomes that of d.
+    #[inline(always)]
+    pub fn part<const N: usize>(
+        self,
+        fractions: &[Lanes<N>],
+        knudsen: &[Lanes<N>],
+        pair: impl Fn(usize, usize) -> Lanes<N>,
+        temperature: Lanes<N>,
+        matrix: &mut [Lanes<N>],
+        own: &mut [Lanes<N>],
+    ) {
+        let n = fractions.len();
+        let mut flows = [[Lanes::default(); MOST_GASES]; MOST_GASES];
+        for (i, row) in flows.iter_mut().enumerate().take(n) {
+            row[..n].copy_from_slice(&matrix[i * n..(i + 1) * n]);
+        }
+        let scale = (temperature * GAS_CONSTANT).inverse();
+        for i in 0..n {
+            let mut resistance = knudsen[i].inverse();
+            let drags = &mut matrix[i * n..(i + 1) * n];
+            drags.fill(Lanes::default());
+            for j in (0..n).filter(|j| *j != i) {
+                let over = pair(i, j).inverse();
+                resistance += fractions[j] * over;
+                for (drag, flow) in drags.iter_mut().zip(&flows[j]) {
+                    *drag += *flow * over;
+                }
+            }
+            let alone = resistance.inverse();
+            for drag in drags {
+                *drag = *drag * alone;
+            }
+            own[i] = alone * scale;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +143,36 @@ mod tests {
                 "{pore}: {}",
                 one / other
             );
+        }
+    }
+
+    #[test]
+    fn the_parts_of_a_flow_are_the_flow() {
+        let between = [[0.0, 1e-4, 2e-4], [1e-4, 0.0, 3e-4], [2e-4, 3e-4, 0.0]];
+        let pair = |i: usize, j: usize| Lanes::all(between[i][j]);
+        for (fractions, pore) in [([0.2, 0.3, 0.5], 1e-7), ([0.0, 0.4, 0.6], 1e-5)] {
+            let fractions = fractions.map(Lanes::<1>::all);
+            let masses = [0.002, 0.028, 0.044];
+            let walls = masses.map(|mass| Lanes::all(knudsen::diffusivity(pore, 900.0, mass)));
+            let mut whole = [Lanes([0.0]); 9];
+            DustyGas.fill(&fractions, &walls, pair, Lanes([900.0]), &mut whole);
+            let (mut drags, mut own) = (whole, [Lanes([0.0]); 3]);
+            DustyGas.part(
+                &fractions,
+                &walls,
+                pair,
+                Lanes([900.0]),
+                &mut drags,
+                &mut own,
+            );
+            for i in 0..3 {
+                for j in 0..3 {
+                    let alone = if i == j { own[i][0] } else { 0.0 };
+                    let found = alone + fractions[i][0] * drags[3 * i + j][0];
+                    let exact = whole[3 * i + j][0];
+                    assert!((found - exact).abs() < 1e-12 * whole[4 * i][0], "{i} {j}");
+                }
+            }
         }
     }
 

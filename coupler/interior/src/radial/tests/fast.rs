@@ -1,13 +1,22 @@
 //! Reactions as fast as any, and laws whose rate grows as the solid goes.
 
-use calcine_physics::reaction::conversion::{Conversion, FirstOrder, Nucleation};
+use calcine_physics::gas::GAS_CONSTANT;
+use calcine_physics::pores::Permeability;
+use calcine_physics::reaction::conversion::{
+    ContractingVolume, Conversion, FirstOrder, Nucleation,
+};
+use calcine_physics::reaction::equilibrium::GibbsLine;
 use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
 use calcine_physics::solid::HeatCapacity;
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
+use calcine_physics::thermo::Mixture;
 
 use super::support::*;
-use super::verification::{KELVIN, RADIUS, dilute_gas, first_order, pellet, wide};
+use super::verification::{
+    DILUTE, KELVIN, RADIUS, diffusivity, dilute_gas, first_order, pellet, wide,
+};
+
 use crate::radial::{PoreGas, Radial, RadialNumerics};
 use crate::reacting::{Rate, Reaction, SolidChemistry};
 
@@ -180,5 +189,136 @@ fn limestone_that_bursts_cools_until_it_no_longer_does() {
         // It takes 178 kJ/mol, and holds about 110 J/mol/K.
         let found = model.conversion(model.row(0), None);
         assert!((0.01..0.5).contains(&found), "{factor} {order}: {found}");
+    }
+}
+
+#[test]
+fn limestone_that_goes_one_way_sweeps_its_pores() {
+    // Carbon dioxide drives the nitrogen out of the core to next to nothing.
+    for permeability in [1e-14, 1e-15] {
+        let found = [5, 20, 40].map(|shells| {
+            let mut model = limestone(1.235e15, RadialNumerics::new(grid(shells)));
+            model.physics.solid.permeability = Permeability::Constant(permeability);
+            for reaction in &mut model.physics.chemistry.reactions {
+                reaction.equilibrium = Equilibrium::OneWay;
+            }
+            put(&mut model, LIME_RADIUS, LIME_DENSITY, 1000.0, 1);
+            for _ in 0..60 {
+                window(&mut model, &flue_gas(1400.0), LIME_RADIUS, 10.0);
+            }
+            model.conversion(model.row(0), None)
+        });
+        assert!((found[0] - found[2]).abs() < 0.05, "{found:?}");
+        assert!((found[1] - found[2]).abs() < 0.01, "{found:?}");
+    }
+}
+
+#[test]
+fn a_reaction_of_order_zero_ends_where_its_gas_does() {
+    // Effectiveness 1 - r³ where the core is empty within r, φ² = 6/(1 - 3 r² + 2 r³) (Weisz, Z. Phys. Chem. 11 (1957) 1).
+    for (thiele_squared, exact) in [(4.0, 1.0), (12.0, 0.875), (60.0, 0.479_894)] {
+        for orders in [vec![(0, 0.0)], Vec::new()] {
+            let full = thiele_squared * diffusivity() / (RADIUS * RADIUS) * DILUTE * 1e5
+                / (GAS_CONSTANT * KELVIN);
+            let rate = Rate::Power(PowerLaw {
+                rate_constant: constant(full),
+                in_series: None,
+                solids: Vec::new(),
+                gases: orders,
+            });
+            let mut model = pellet(rate, Vec::new(), wide(), grid(40));
+            put(&mut model, RADIUS, 2000.0, KELVIN, 1);
+            let still = dilute_gas(1e7);
+            let mut passed = Vec::new();
+            for _ in 0..5 {
+                passed = window(&mut model, &still, RADIUS, 1e3);
+            }
+            let found = -passed[0] / (full * sphere::volume(RADIUS) * 1e3);
+            assert!((found - exact).abs() < 5e-3, "{thiele_squared}: {found}");
+        }
+    }
+}
+
+/// Hematite, magnetite, wustite and iron in hydrogen, by grains.
+fn ore(one_way: bool) -> Radial {
+    let names = ["Fe2O3", "Fe3O4", "FeO", "Fe"];
+    let solids = names
+        .map(|name| SolidSpecies::built_in(name).unwrap())
+        .to_vec();
+    let gas = Mixture::new(["H2", "H2O", "N2"]).unwrap();
+    let reaction = |name: &str, solids_of: [(usize, f64); 2], (factor, energy): (f64, f64)| {
+        let change = |t: f64| {
+            let parts = solids_of
+                .iter()
+                .map(|&(s, n)| n * solids[s].gibbs_energy(t));
+            let species = gas.species();
+            parts.sum::<f64>() + species[1].polynomial().gibbs_energy(t)
+                - species[0].polynomial().gibbs_energy(t)
+        };
+        Reaction {
+            name: name.into(),
+            solids: solids_of.to_vec(),
+            gases: vec![(0, -1.0), (1, 1.0)],
+            rate: Rate::Conversion {
+                rate_constant: Arrhenius {
+                    factor,
+                    exponent: 0.0,
+                    activation_energy: energy,
+                },
+                conversion: Conversion::ContractingVolume(ContractingVolume),
+                gases: vec![(0, 1.0)],
+            },
+            equilibrium: match one_way {
+                true => Equilibrium::OneWay,
+                false => Equilibrium::Gibbs(GibbsLine::new(change)),
+            },
+        }
+    };
+    let reactions = vec![
+        reaction("hematite", [(0, -3.0), (1, 2.0)], (730.0, 92_092.0)),
+        reaction("magnetite", [(1, -1.0), (2, 3.0)], (48.7, 71_162.0)),
+        reaction("wustite", [(2, -1.0), (3, 1.0)], (18.1, 63_627.0)),
+    ];
+    let chemistry = SolidChemistry::new(solids.clone(), Some(gas.clone()), reactions).unwrap();
+    let pores = PoreGas {
+        pressure: 101_325.0,
+        fractions: vec![0.6, 0.02, 0.38],
+    };
+    let solid = porous(&[5250.0, 5180.0, 5700.0, 7870.0], 1.5);
+    let start = [1.0, 0.0, 0.0, 0.0];
+    Radial::new(
+        chemistry,
+        &start,
+        solid,
+        pores,
+        RadialNumerics::new(grid(30)),
+    )
+    .unwrap()
+}
+
+#[test]
+fn ore_whose_oxides_follow_each_other_is_reduced() {
+    for one_way in [true, false] {
+        let mut model = ore(one_way);
+        let radius = 6e-3;
+        put(&mut model, radius, 3500.0, 1173.0, 1);
+        let gas = Mixture::new(["H2", "H2O", "N2"]).unwrap();
+        let still = Still {
+            temperature: 1173.0,
+            pressure: 101_325.0,
+            composition: gas.mass_fractions(&[0.6, 0.02, 0.38]),
+            conductance: 150.0 * sphere::surface(radius),
+            film: 0.15,
+            network: 0.0,
+        };
+        let (mut before, windows) = (0, 150);
+        for _ in 0..windows {
+            window(&mut model, &still, radius, 10.0);
+            let steps = model.work()[0];
+            assert!(steps - before < 200, "{one_way}: {}", steps - before);
+            before = steps;
+        }
+        let found = model.conversion(model.row(0), None);
+        assert!(found > 0.99, "{one_way}: {found}");
     }
 }

@@ -10,7 +10,9 @@ use calcine_physics::sphere;
 use calcine_physics::thermo::Mixture;
 
 use crate::model::{GasLines, NetworkHeat, Newcomer, ParticleModel, Surroundings, Transfer};
-use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrading, ShellGrid, ShellResolution};
+use crate::radial::{
+    PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrading, ShellGrid, ShellResolution,
+};
 use crate::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use crate::thin::TEMPERATURE;
 
