@@ -272,3 +272,97 @@ fn radiating_shells_have_the_same_bits_on_one_thread_and_after_they_resume() {
         program::command(&case, out, &[], &steps(2000, 1))
     });
 }
+
+#[test]
+fn surroundings_that_get_hotter_are_at_their_mean_over_a_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let ramp = r#"laws.radiation.surroundings=[["0 s", "300 K"], ["600 s", "1300 K"]]"#;
+    // Windows of 30 and 100 s against 2 s; at the end of a window the surroundings are 25 and 83 K above their mean.
+    for (inside, most) in [("radial", [1.0, 4.0]), ("thin", [1.0, 8.0])] {
+        let at = |step: u32| {
+            let mut set = steps(600, step).to_vec();
+            set.push(ramp.to_owned());
+            set.push("output.series_every=100 s".to_owned());
+            set.push("output.every=600 s".to_owned());
+            set.push("time.checkpoint.every=600 s".to_owned());
+            set.push(format!("materials.ball.inside={inside}"));
+            if inside == "thin" {
+                set.retain(|one| !one.contains("radial"));
+            }
+            let case = RADIANT.replace("INSIDE", "1");
+            let case = match inside {
+                "thin" => case.replace(
+                    "[materials.ball.radial]\nshells = 12\ntemperature_error = \"0.2 K\"\n",
+                    "",
+                ),
+                _ => case,
+            };
+            let file = folder.path().join(format!("{inside}-{step}.toml"));
+            std::fs::write(&file, case).unwrap();
+            let out = folder.path().join(format!("{inside}-{step}"));
+            program::run(&file, &out, &[], &set);
+            Summary::read(&out).unwrap().quantities["kelvin"]
+                .value
+                .unwrap()
+        };
+        let fine = at(2);
+        for (step, most) in [30, 100].into_iter().zip(most) {
+            let found = at(step);
+            println!("{inside} by {step} s: {found} {fine}");
+            assert!(
+                (found - fine).abs() < most,
+                "{inside} {step}: {found} {fine}"
+            );
+        }
+    }
+}
+
+/// Mean mass fraction of hydrogen at the outlet of the shipped catalyst pellet, its ledger closed.
+fn hydrogen(out: &Path, words: &[&str], set: &[&str]) -> f64 {
+    program::run(&program::shipped("catalyst-pellet"), out, words, set);
+    let summary = Summary::read(out).unwrap();
+    for name in ["mass", "energy", "energy_exchange", "particle_mass"] {
+        let error = summary.ledger.lines[name].relative_error;
+        assert!(error < 1e-12, "{name}: {error}");
+    }
+    for (element, line) in &summary.ledger.elements {
+        let error = line.relative_error;
+        assert!(error < 1e-12, "{element}: {error}");
+    }
+    summary.quantities["outlet_h2"].value.unwrap()
+}
+
+#[test]
+fn a_catalyst_turns_over_gas_and_stays_and_shells_by_its_thiele_number_resolve_its_layer() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str, set: &[&str]| hydrogen(&folder.path().join(name), &[], set);
+    let none = at("none", &["reactions.0.rate.factor=0"]);
+    let [shipped, fine, coarse] = [
+        at("shipped", &[]),
+        at("fine", &["materials.catalyst.radial.shells=400"]),
+        at("coarse", &["materials.catalyst.radial.grading=1"]),
+    ]
+    .map(|found| found - none);
+    println!("{none} {shipped} {fine} {coarse}");
+    assert!(fine > 1e-6, "{fine}");
+    assert!((shipped / fine - 1.0).abs() < 2e-3, "{shipped} {fine}");
+    assert!((coarse / fine - 1.0).abs() > 1e-2, "{coarse} {fine}");
+    let words = ["--gas", "openfoam", "--particles", "liggghts"];
+    let other = hydrogen(&folder.path().join("openfoam"), &words, &[]) - none;
+    assert!((other / shipped - 1.0).abs() < 1e-4, "{other} {shipped}");
+    let thin = at("thin", &["particles.0.diameter=0.2 mm"]) - none;
+    assert!(thin > 0.0 && thin < shipped, "{thin}");
+}
+
+#[test]
+fn limestone_that_goes_one_way_burns_though_its_core_is_swept() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = std::fs::read_to_string(program::shipped("calcining-stone")).unwrap();
+    let file = folder.path().join("one-way.toml");
+    std::fs::write(&file, case.replace("<=>", "=>")).unwrap();
+    let out = folder.path().join("one-way");
+    program::run(&file, &out, &[], &["time.end=10 min"]);
+    let summary = Summary::read(&out).unwrap();
+    let lime = summary.quantities["lime"].value.unwrap();
+    assert!((0.3..0.8).contains(&lime), "{lime}");
+}

@@ -2,7 +2,7 @@
 
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::interior::radial::{
-    PoreGas, PorousSolid, RadialError, RadialNumerics, ShellResolution,
+    PoreGas, PorousSolid, RadialError, RadialNumerics, ShellResolution, StandingGas,
 };
 use calcine_coupler::interior::reacting::{SizeChange, SolidChemistry};
 use calcine_coupler::interior::{
@@ -100,8 +100,12 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
     let spec = &own.radial;
     let reacts = !case.chemistry.reactions.is_empty();
     let (chemistry, fractions, true_densities, size) = if reacts {
+        let chemistry = match own.composition {
+            Some(_) => of_shells(case)?,
+            None => SolidChemistry::new(case.chemistry.solids.clone(), None, Vec::new())?,
+        };
         (
-            of_shells(case)?,
+            chemistry,
             case.chemistry.compositions[material].clone(),
             case.chemistry.true_densities[material].clone(),
             case.chemistry.sizes[material].clone(),
@@ -112,7 +116,7 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
         (
             chemistry,
             vec![1.0],
-            vec![f64::INFINITY],
+            vec![own.true_density().unwrap_or(f64::INFINITY)],
             SizeChange::Constant,
         )
     };
@@ -137,6 +141,10 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
         tortuosity: spec.tortuosity.unwrap_or(1.0),
         permeability: spec.permeability.unwrap_or(Permeability::Constant(1.0)),
         size,
+        standing_gas: Some(StandingGas {
+            model: case.gas.properties.clone(),
+            composition: case.gas.composition.clone(),
+        }),
     };
     let numerics = RadialNumerics {
         grid: spec.grid,

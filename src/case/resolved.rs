@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use calcine_coupler::interior::radial::ShellGrading;
 use calcine_coupler::interior::reacting::{Rate, Reaction, SizeChange};
 use calcine_coupler::physics::gas::GAS_CONSTANT;
 use calcine_coupler::physics::gas_model::GasModel;
@@ -47,12 +48,16 @@ pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
     let exchanging = case.chemistry.reactions.iter();
     for one in exchanging.filter(|one| !one.gases.is_empty()) {
         let found = thiele(case, population, (one, gas), diameter);
-        all.extend(found.map(|(number, kelvin)| {
-            format!(
-                "Thiele number R sqrt(r/(D c)) of {} at {} K {number:.2e}",
-                one.name,
-                short3(kelvin)
-            )
+        all.extend(found.into_iter().flat_map(|(number, kelvin)| {
+            let share = material.radial.grid.share_of_layer(number);
+            [
+                format!(
+                    "Thiele number R sqrt(r/(D c)) of {} at {} K {number:.2e}",
+                    one.name,
+                    short3(kelvin)
+                ),
+                format!("share that these shells take of a first-order layer of it {share:.3}"),
+            ]
         }));
     }
     all
@@ -64,6 +69,7 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
     let resolved = materials.filter(|(_, one)| one.inside != Inside::Thin);
     let reactions = &case.chemistry.reactions;
     let mut all = unlikely_pores(case);
+    all.extend(unresolved_layers(case));
     let each = resolved.flat_map(|(m, _)| reactions.iter().map(move |one| (m, one)));
     all.extend(each.filter_map(|(material, reaction)| {
         let full = closing(case, material, reaction)?;
@@ -138,8 +144,67 @@ const WIDE: f64 = 0.1;
 /// Permeability over that of straight pores: below and above it is not likely meant.
 const TIGHT: f64 = 1e-6;
 const OPEN: f64 = 100.0;
+/// Share of a lasting layer below the surface that shells take at least without a warning.
+const RESOLVED: f64 = 0.95;
 /// Porosity at which a law of grains is looked at.
 const HALF_OPEN: f64 = 0.5;
+
+/// Layers of gas below the surface that last and that the shells do not resolve, and shells for a layer that burns away with the first of them.
+fn unresolved_layers(case: &Case) -> Vec<String> {
+    let GasModel::Mixture(gas) = &case.gas.properties else {
+        return Vec::new();
+    };
+    let mut all = Vec::new();
+    for population in &case.particles {
+        let material = &case.materials[population.material];
+        let size = case.chemistry.sizes.get(population.material);
+        let shrinks = size.is_some_and(|size| size.volumes().is_some());
+        let grid = &material.radial.grid;
+        let Ok(diameter) = population.sizes.mean() else {
+            continue;
+        };
+        if material.inside == Inside::Thin {
+            continue;
+        }
+        if shrinks && matches!(grid.grading, ShellGrading::Thiele(_)) {
+            all.push(format!(
+                "`materials.{}.radial.grading` makes thin shells at the surface, which are used up first where particles shrink (`size`): coarse \
+                 ones then come to the surface; write a ratio, such as grading = 4, and more shells",
+                material.name
+            ));
+        }
+        for one in &case.chemistry.reactions {
+            let uses_gas = one.gases.iter().any(|gas| gas.1 < 0.0);
+            // The layer of a solid that is used up in place moves on as a front.
+            let lasts = shrinks || one.solids.iter().all(|solid| solid.1 >= 0.0);
+            let found = thiele(case, population, (one, gas), diameter);
+            let Some((number, kelvin)) = found.filter(|_| uses_gas && lasts) else {
+                continue;
+            };
+            let share = grid.share_of_layer(number);
+            if share < RESOLVED {
+                let remedy = if shrinks {
+                    "more shells".to_owned()
+                } else {
+                    format!(
+                        "grading = {{ thiele = {} }}, or more shells",
+                        short3(number)
+                    )
+                };
+                all.push(format!(
+                    "`{}` takes place in a layer below the surface of `{}` that {} shells do not resolve: at {} K its Thiele number is {}, and they \
+                     take {share:.2} of what it takes by first order; write {remedy}",
+                    one.name,
+                    population.name,
+                    grid.shells,
+                    short3(kelvin),
+                    short3(number),
+                ));
+            }
+        }
+    }
+    all
+}
 
 /// The conversion at which the solids of a reaction fill the particles of a material, from its start and by the reaction alone; `None`
 /// where some room stays.

@@ -78,6 +78,9 @@ shipped! {
     WetDrum "wet-drum" "Wet wood chips that dry and char in a turning drum.";
     WoodDrying "wood-drying" "Wet wood chips that dry in hot air.";
     CalciningStone "calcining-stone" "A limestone resolved along its radius.";
+    OrePellet "ore-pellet" "An ore pellet reduced by hydrogen, resolved along its radius.";
+    CharParticle "char-particle" "A char gasified by carbon dioxide, resolved along its radius.";
+    CatalystPellet "catalyst-pellet" "The water-gas shift in a catalyst pellet.";
     LimeBurning "lime-burning" "Limestone that is burnt to lime by hot gas.";
     OreReduction "ore-reduction" "Iron-ore pellets reduced to iron by carbon monoxide and hydrogen.";
     IronStack "iron-stack" "Conduction and radiation in a stack of iron spheres.";

@@ -10,6 +10,7 @@ mod headline;
 pub(crate) mod links;
 mod means;
 pub(crate) mod number;
+mod over_radius;
 mod over_time;
 pub(crate) mod overview;
 pub(crate) mod page;
@@ -110,6 +111,11 @@ pub(crate) fn page(directory: &Path) -> Result<String, ResultsError> {
         "Means over layers across the longest side: of the gas by volume, of the particles by number.",
         &distributions.profiles,
     );
+    let inside = over_radius::render(directory)?;
+    if !inside.is_empty() {
+        let text = "Of particles with shells, each value where r² is its mean over the shell: means over all of them shell by shell, and single ones at the end.";
+        page.section("Over the radius of particles", text, &inside);
+    }
     page.section(
         "Histograms",
         "Of the number of particles, at the first snapshot and at the last.",

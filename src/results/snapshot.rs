@@ -285,11 +285,11 @@ fn values(rows: &Ragged) -> Values<'_> {
     }
 }
 
-/// Rows of any number of values as rows of as many as the longest has (one at least), filled up with zero; and how
-/// many each has.
+/// Rows of any number of values as rows of as many as the longest has (one at least), filled up with what is no number; and
+/// how many each has.
 pub(super) fn padded(rows: &Ragged) -> (usize, Vec<f64>, Vec<u64>) {
     let width = rows.lengths().max().unwrap_or(0).max(1);
-    let mut values = vec![0.0; width * rows.rows()];
+    let mut values = vec![f64::NAN; width * rows.rows()];
     for (row, to) in values.chunks_exact_mut(width).enumerate() {
         match rows.kind() {
             ColumnKind::Real => {

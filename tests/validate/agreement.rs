@@ -23,9 +23,12 @@ const fn whole(name: &'static str) -> Compared {
 
 /// Shortened: the furnace as far as two of the means over 240 s that its pressure drop is compared by, of 3400 s; it goes on to
 /// 600 s in `shaft-flames`.
-const CASES: [Compared; 15] = [
+const CASES: [Compared; 18] = [
     whole("lime-burning"),
     whole("calcining-stone"),
+    whole("ore-pellet"),
+    whole("char-particle"),
+    whole("catalyst-pellet"),
     whole("tg-furnace"),
     whole("tg-heap"),
     whole("ore-reduction"),

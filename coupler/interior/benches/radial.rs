@@ -59,6 +59,7 @@ fn stones(radius: f64, count: u64) -> Radial {
         tortuosity: 2.0,
         permeability: Permeability::Constant(1e-13),
         size: SizeChange::Constant,
+        standing_gas: None,
     };
     let pores = PoreGas {
         pressure: 101_325.0,

@@ -25,7 +25,7 @@ const SIZE: &[Key] = &[
 
 #[rustfmt::skip]
 const GRADING: &[Key] = &[
-    key("thiele", Number(D::NONE, Between(1.0, 1000.0)), Required, "Thiele number R sqrt(k/D) of a layer in which concentrations fall as exp(-thiele s/R) at the depth s: shells get thicker as exp(thiele s/(2 R)), an eleventh of them evenly.", "30"),
+    key("thiele", Number(D::NONE, Between(1.0, 1e5)), Required, "Thiele number R sqrt(k/D) of a layer in which concentrations fall as exp(-thiele s/R) at the depth s: shells get thicker as exp(thiele s/(2 R)), an eleventh of them evenly.", "30"),
 ];
 
 #[rustfmt::skip]

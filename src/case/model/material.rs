@@ -40,6 +40,19 @@ pub struct MaterialSpec {
     pub poisson: Option<f64>,
 }
 
+impl MaterialSpec {
+    /// Density in kg/m³ of its solids at the start without pores, where it states what they are and their true densities.
+    pub fn true_density(&self) -> Option<f64> {
+        let composition = self.composition.as_ref()?;
+        let held = composition.iter().enumerate().filter(|(_, y)| **y > 0.0);
+        let volume = held.map(|(s, y)| {
+            let density = self.radial.true_densities.get(s).copied().flatten();
+            density.map(|density| y / density)
+        });
+        Some(1.0 / volume.sum::<Option<f64>>()?)
+    }
+}
+
 /// What is inside of particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Inside {

@@ -37,7 +37,13 @@ pub(super) fn inventory(
         .map(|s| {
             let held = |own: &Vec<f64>| own.get(s).is_some_and(|y| *y > 0.0);
             let mut turned = reactions.iter().flat_map(|one| &one.solids);
-            compositions.iter().any(held) || turned.any(|part| part.0 == s)
+            let catalyses = |one: &Reaction| match &one.rate {
+                Rate::Power(law) => law.solids.iter().any(|part| part.0 == s && part.1 > 0.0),
+                _ => false,
+            };
+            compositions.iter().any(held)
+                || turned.any(|part| part.0 == s)
+                || reactions.iter().any(catalyses)
         })
         .collect();
     let place = |s: usize| used[..s].iter().filter(|used| **used).count();

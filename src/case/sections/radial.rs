@@ -162,7 +162,30 @@ fn fits_one(
     if material.conductivity.is_none() && !table.has("conductivity") {
         table.missing_like("conductivity", "\"1.5 W/m/K\"");
     }
-    if !chemistry.exchanges() {
+    let alone = material.composition.is_none();
+    let parallel = matches!(
+        material.radial.conduction,
+        PorousConductivity::Parallel { .. }
+    );
+    if parallel && material.true_density().is_none() {
+        let rule = "goes by `parallel`, which needs the porosity at the start";
+        let help = if alone {
+            "state a `composition` in place of `heat_capacity`, and `radial.true_densities`; or write law = \"stated\""
+        } else {
+            "state `radial.true_densities` of what it holds, or write law = \"stated\""
+        };
+        if let Some(inner) = table.table("radial") {
+            inner.fail("conduction", rule, help);
+        }
+        return;
+    }
+    if alone || !chemistry.exchanges() {
+        // Without gas that reactions exchange pores count for what conducts alone.
+        if let (true, Some(found), Some(inner)) =
+            (parallel, material.true_density(), table.table("radial"))
+        {
+            leaves_pores(&inner, found, material.density);
+        }
         return;
     }
     let Some(inner) = table.table("radial") else {
@@ -207,13 +230,17 @@ fn fits_one(
         return;
     }
     let true_density = 1.0 / start.iter().zip(own).map(|(y, rho)| y / rho).sum::<f64>();
-    if true_density <= material.density {
-        let rule = format!(
-            "come to {true_density:.0} kg/m^3 at the start, which leaves no pores in a particle of `density` {:.0} kg/m^3",
-            material.density
-        );
-        let help =
-            "true densities are without pores, above that of the particle: correct one of them";
-        inner.fail("true_densities", rule, help);
+    leaves_pores(&inner, true_density, material.density);
+}
+
+/// An error where solids of a true density in kg/m³ fill particles of a density.
+fn leaves_pores(table: &TableReader<'_>, true_density: f64, density: f64) {
+    if true_density > density {
+        return;
     }
+    let rule = format!(
+        "come to {true_density:.0} kg/m^3 at the start, which leaves no pores in a particle of `density` {density:.0} kg/m^3"
+    );
+    let help = "true densities are without pores, above that of the particle: correct one of them";
+    table.fail("true_densities", rule, help);
 }

@@ -1,6 +1,7 @@
 //! What the particles of a material are, as those with shells need it.
 
 use calcine_physics::conduction::Conductivity;
+use calcine_physics::gas_model::GasModel;
 use calcine_physics::pores::{Permeability, PorousConductivity};
 
 use super::grid::ShellGrid;
@@ -23,6 +24,24 @@ pub struct PorousSolid {
     pub permeability: Permeability,
     /// How shells take up room.
     pub size: SizeChange,
+    /// Gas that stands in the pores where reactions exchange none, by which they conduct.
+    pub standing_gas: Option<StandingGas>,
+}
+
+/// Gas in pores that nothing changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StandingGas {
+    /// What it is.
+    pub model: GasModel,
+    /// Mass fraction of each species; empty of a gas of one.
+    pub composition: Vec<f64>,
+}
+
+impl StandingGas {
+    /// Conductivity in W/m/K at a temperature in K.
+    pub fn conductivity(&self, temperature: f64) -> f64 {
+        self.model.conductivity(temperature, &self.composition)
+    }
 }
 
 /// What is in the pores of a particle that comes in.

@@ -32,7 +32,7 @@ mod workspace;
 
 pub use attempt::RadialStalled;
 pub use grid::{ShellGrading, ShellGrid};
-pub use material::{PoreGas, PorousSolid, RadialNumerics, ShellResolution};
+pub use material::{PoreGas, PorousSolid, RadialNumerics, ShellResolution, StandingGas};
 pub use physics::RadialError;
 
 use self::physics::RadialPhysics;

@@ -82,7 +82,11 @@ impl RadialPhysics {
                         let fractions = self.mass_fractions(own, lane);
                         mixture.conductivity(kelvin[lane], &fractions[..g])
                     }
-                    _ => 0.0,
+                    (PorousConductivity::Parallel { .. }, None) => {
+                        let standing = self.solid.standing_gas.as_ref();
+                        standing.map_or(0.0, |gas| gas.conductivity(kelvin[lane]))
+                    }
+                    (PorousConductivity::Stated, _) => 0.0,
                 };
                 let material = &self.solid.conductivity;
                 found[lane] = law.of(material, gas, porosity[lane], kelvin[lane]);

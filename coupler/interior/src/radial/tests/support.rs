@@ -153,6 +153,7 @@ pub fn porous(solids: &[f64], conductivity: f64) -> PorousSolid {
         tortuosity: 2.0,
         permeability: Permeability::Constant(1e-13),
         size: SizeChange::Constant,
+        standing_gas: None,
     }
 }
 
