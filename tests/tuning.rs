@@ -563,6 +563,64 @@ fn curves_that_are_kept_back_are_compared_and_not_fitted() {
     assert!(told.contains("no curve that is fitted"), "{told}");
 }
 
+/// A contracting area at 10 K/min, by its rate of loss alone, within bounds far apart: where a model's peak lies outside the curve,
+/// no parameter has a slope.
+#[test]
+fn rates_of_loss_alone_are_fitted_by_every_law() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let text = heated(150e3);
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for line in text.lines().skip(1) {
+        rows.push(line.split('\t').map(|one| one.parse().unwrap()).collect());
+    }
+    let mut csv = "time [min]\ttemperature [K]\tDTG [%/min]\n".to_owned();
+    for three in rows.windows(3) {
+        let rate = (three[0][2] - three[2][2]) / (three[2][0] - three[0][0]);
+        csv += &format!("{}\t{}\t{rate:.6}\n", three[1][0], three[1][1]);
+    }
+    fs::write(at("a.csv"), csv).unwrap();
+    let text = CASE
+        .replace("laws = [\"F1\"]", "laws = [\"all\"]\nmass_loss = 0.3")
+        .replace("1e20", "1e25")
+        .replace("400 kJ", "500 kJ")
+        + "compare = [\"loss_rate\"]\n[intervals]\nbootstrap = 0\nprofile = false\n";
+    fs::write(at("case.toml"), &text).unwrap();
+    let run = |out: &str, set: &[&str]| {
+        let (case, out) = (at("case.toml"), at(out));
+        let mut words = vec![case.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        words.extend(set);
+        tune(&words)
+    };
+    let (code, told) = run("all", &[]);
+    assert_eq!(code, 0, "{told}");
+    let found = summary(&at("all"));
+    let energy = found["tuning"]["parameters"]["activation_energy"]["value"].as_f64();
+    assert!((energy.unwrap() / 150e3 - 1.0).abs() < 0.01, "{told}");
+    assert!(!told.contains("does not react"), "{told}");
+    let criteria = found["tuning"]["laws"].as_array().unwrap().iter();
+    let mut criteria: Vec<f64> = criteria.map(|one| one["aic"].as_f64().unwrap()).collect();
+    criteria.sort_by(f64::total_cmp);
+    // Laws that find the peak miss it by shapes of their own.
+    let apart = criteria.windows(2).all(|pair| pair[1] - pair[0] > 1e-3);
+    assert!(apart, "{criteria:?}");
+    // Bounds within which nothing reacts.
+    let cold = [
+        "--set",
+        "parameters.activation_energy.low=450 kJ/mol",
+        "--set",
+        "parameters.pre_exponential.high=1e5 1/s",
+    ];
+    let (code, told) = run("cold", &cold);
+    assert_eq!(code, 3, "{told}");
+    for word in [
+        "no better than a sample that does not react",
+        "Widen the bounds",
+    ] {
+        assert!(told.contains(word), "{told}");
+    }
+}
+
 fn tune(words: &[&str]) -> (i32, String) {
     calcine("tune", words)
 }

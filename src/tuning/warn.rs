@@ -136,6 +136,19 @@ pub(super) fn pairs(space: &ParameterSpace, pairs: &[ParameterPair]) -> Vec<Stri
     told.collect()
 }
 
+/// Laws whose best fit is no better than no reaction.
+pub(super) fn explain_nothing(laws: &[LawFit]) -> Option<String> {
+    let names = laws.iter().filter(|one| one.explains_nothing());
+    let names: Vec<&str> = names.map(|one| one.law).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "within the bounds the best fit by {} is no better than a sample that does not react: these values mean nothing; widen the \
+             bounds of pre_exponential and activation_energy, or raise `method.samples`",
+            names.join(", ")
+        )
+    })
+}
+
 /// One heating rate cannot tell energy, pre-exponential factor and law apart.
 pub(super) fn one_rate(
     case: &TuningCase,
@@ -166,7 +179,8 @@ pub(super) fn one_rate(
         short3(60.0 * high),
         short3(energy.value / 1e3)
     );
-    let others = laws.iter().filter(|one| one.law != law);
+    let others = laws.iter();
+    let others = others.filter(|one| one.law != law && !one.explains_nothing());
     let others = others.filter_map(|one| {
         let energy = one
             .values
