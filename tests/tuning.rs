@@ -621,6 +621,43 @@ fn rates_of_loss_alone_are_fitted_by_every_law() {
     }
 }
 
+/// A change of the mass begins near zero and becomes negative.
+#[test]
+fn a_change_of_the_mass_is_refused_in_every_unit() {
+    let change = |unit: &str, scale: f64| {
+        curve(
+            &format!("Time (min),Temp (degC),Mass ({unit})"),
+            |t, temp, m| {
+                let noise = 0.01 * (17.0 * t).sin();
+                format!("{t},{temp},{:.4}", scale * (m - 99.6 + noise))
+            },
+        )
+    };
+    let stated = format!("{CASE}sample_mass = \"8 mg\"\n");
+    let share = format!("{CASE}sample_share = \"100 %\"\n");
+    for (case, csv) in [
+        (CASE, change("mg", 0.08)),
+        (&stated[..], change("mg", 0.08)),
+        (CASE, change("%", 1.0)),
+        (&share[..], change("%", 1.0)),
+        // From 30 % of the mass on, to 10 % below zero.
+        (
+            CASE,
+            curve("Time (min),Temp (degC),Mass (%)", |t, temp, m| {
+                format!("{t},{temp},{:.4}", m - 70.0)
+            }),
+        ),
+    ] {
+        let told = told(case, &csv);
+        assert!(told.contains("export the mass of the sample"), "{told}");
+    }
+    // All of a sample that burns, and a balance that drifts by 2 % beyond it.
+    let burnt = curve("Time (min),Temp (degC),Mass (%)", |t, temp, m| {
+        format!("{t},{temp},{:.4}", 2.55 * (m - 100.0) + 100.0)
+    });
+    assert_eq!(told(CASE, &burnt), "");
+}
+
 fn tune(words: &[&str]) -> (i32, String) {
     calcine("tune", words)
 }

@@ -6,7 +6,8 @@ use super::CurveFileError;
 use super::columns::{ColumnChoice, FoundColumn, find};
 use super::curve_column::CurveColumn;
 use super::sheet::{Sheet, SheetForm, decode, sheet};
-use super::start::{MassAtStart, plateau};
+use super::start::{MassAtStart, noise, plateau};
+use crate::report::number::figure;
 
 /// How a file of curves is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,6 +49,11 @@ impl Default for CurveRules {
 pub(crate) const LARGEST_RISE: f64 = 0.05;
 /// Rows of a run at least.
 const LEAST_ROWS: usize = 10;
+/// Share of the mass at the start that a file begins with at least, where that mass is stated.
+const LEAST_START: f64 = 0.05;
+/// A loss above the whole mass that is let pass, as the drift of a balance: this share, or so many standard deviations of the noise.
+const LARGEST_EXCESS: f64 = 0.05;
+const NOISE: f64 = 5.0;
 /// Least fall of the mass that counts as one.
 const LEAST_FALL: f64 = 1e-3;
 
@@ -279,7 +285,7 @@ impl Columns {
                 return wrong(
                     0,
                     fact,
-                    "export the mass relative to that at the start, or state the unit as `units.mass`",
+                    "export the mass of the sample, not its change, relative to that at the start, or state the unit as `units.mass`",
                 );
             }
             if weighed && initial.is_none() {
@@ -295,6 +301,29 @@ impl Columns {
                 rows: stated.is_none().then_some(rows),
             });
             mass.iter_mut().for_each(|m| *m /= start);
+            let change = "export the mass of the sample, not its change";
+            if mass[0] < LEAST_START {
+                let fact = format!(
+                    "the mass is {} {} at the start, of the {} {} that masses are relative to",
+                    written(0, found),
+                    found.unit,
+                    figure(start / found.factor, 4),
+                    found.unit
+                );
+                return wrong(0, fact, change);
+            }
+            // A sample may lose all of its mass, and a balance may drift below zero then.
+            let least = -LARGEST_EXCESS.max(NOISE * noise(&mass));
+            if let Some(k) = mass.iter().position(|&m| m < least) {
+                let fact = format!(
+                    "the mass is {} {}: the sample loses more than its mass at the start, {} {}",
+                    written(k, found),
+                    found.unit,
+                    figure(start / found.factor, 4),
+                    found.unit
+                );
+                return wrong(k, fact, change);
+            }
             if let Err((k, fact, help)) = falls(&mass, rules.largest_rise) {
                 return wrong(k, fact, &help);
             }
