@@ -122,7 +122,11 @@ fn bad_curves_are_refused_with_line_fact_and_remedy() {
         ),
         (
             replaced(&line(30), "14,oops,80"),
-            ["line 30", "\"oops\" is not a number", "remove the line"],
+            [
+                "line 30",
+                "\"oops\" is not a number in column 2, \"Temp (degC)\"",
+                "remove the line",
+            ],
         ),
         (
             replaced(&line(30), "14,440"),
@@ -656,6 +660,51 @@ fn a_change_of_the_mass_is_refused_in_every_unit() {
         format!("{t},{temp},{:.4}", 2.55 * (m - 100.0) + 100.0)
     });
     assert_eq!(told(CASE, &burnt), "");
+}
+
+/// Runs that the file tells apart by texts have these as names; another column of texts is told with its heading.
+#[test]
+fn runs_may_be_told_apart_by_texts() {
+    let rows = |head: &str, name: &str| {
+        let of = |run: &str| {
+            let text = curve(head, |t, temp, m| format!("{run},{t},{temp},{m:.4}"));
+            text.split_once('\n').unwrap().1.to_owned()
+        };
+        format!(
+            "{head}\n{}{}",
+            of(&format!("{name}5")),
+            of(&format!("{name}10"))
+        )
+    };
+    let read = |head: &str, name: &str, keys: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.csv"), rows(head, name)).unwrap();
+        let case = format!("{CASE}{keys}");
+        let case = parse_tuning(&folder.path().join("case.toml"), &case, &[]);
+        let case = case.map_err(|errors| errors.to_string()).unwrap();
+        let names = case.targets.iter().map(|one| one.name.clone());
+        names.collect::<Vec<String>>()
+    };
+    let of_sample = "Sample,Time (min),Temp (degC),Mass (%)";
+    let of_run = "run,Time (min),Temp (degC),Mass (%)";
+    let key = "columns = { run = \"Sample\" }";
+    assert_eq!(read(of_sample, "S", key), ["S5", "S10"]);
+    assert_eq!(
+        read(of_sample, "S", "columns = { run = \"1\" }"),
+        ["S5", "S10"]
+    );
+    assert_eq!(read(of_run, "S", ""), ["S5", "S10"]);
+    // Numbers are no names.
+    assert_eq!(read(of_run, "", ""), ["20 K/min", "20 K/min'"]);
+    let named = format!("{key}\nname = \"lime\"");
+    assert_eq!(read(of_sample, "S", &named), ["lime S5", "lime S10"]);
+    let told = told(CASE, &rows(of_sample, "S"));
+    for word in [
+        "\"S5\" is not a number in column 1, \"Sample\"",
+        "`columns.run`",
+    ] {
+        assert!(told.contains(word), "{told}");
+    }
 }
 
 fn tune(words: &[&str]) -> (i32, String) {

@@ -307,6 +307,10 @@ impl<'t, 'a> Target<'t, 'a> {
             name: match &self.name {
                 Some(name) if several => format!("{name} {}", run.label),
                 Some(name) => name.clone(),
+                // A run that the file names.
+                None if !run.label.is_empty() && run.label.parse::<f64>().is_err() => {
+                    run.label.clone()
+                }
                 None => format!("{:.3} K/min", rate).replace(".000", ""),
             },
             run: HeatingRun {

@@ -29,7 +29,7 @@ pub(super) struct FoundColumn {
 }
 
 /// A heading as its name and its unit: `Temp./°C`, `Mass (mg)`, `Time [min]`, `mass_mg`.
-fn parted(heading: &str) -> (String, Option<String>) {
+pub(super) fn parted(heading: &str) -> (String, Option<String>) {
     let text = heading.trim();
     for (open, close) in [('(', ')'), ('[', ']')] {
         if let Some((name, rest)) = text.rsplit_once(open)
@@ -198,6 +198,7 @@ mod tests {
                 rows: Vec::new(),
                 lines: Vec::new(),
                 heading_line: Some(1),
+                labels: None,
             };
             let found = find(Path::new("a.csv"), &sheet, column, &ColumnChoice::default());
             let found = found.unwrap().unwrap();

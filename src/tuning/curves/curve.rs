@@ -94,7 +94,10 @@ pub fn parse_curves(
     file: &CurveFile,
 ) -> Result<Vec<MeasuredRun>, CurveFileError> {
     let text = decode(path, bytes)?;
-    let sheet = sheet(path, &text, file.form)?;
+    let runs = CurveColumn::ALL.iter().zip(&file.columns);
+    let mut runs = runs.filter(|(column, _)| **column == CurveColumn::Run);
+    let runs = runs.find_map(|(_, choice)| choice.heading.as_deref());
+    let sheet = sheet(path, &text, file.form, runs)?;
     let mut found: [Option<FoundColumn>; 5] = Default::default();
     for ((column, choice), place) in CurveColumn::ALL.iter().zip(&file.columns).zip(&mut found) {
         *place = find(path, &sheet, *column, choice)?;
@@ -149,7 +152,10 @@ fn groups(sheet: &Sheet, run: Option<&FoundColumn>) -> Vec<(String, Vec<usize>)>
     };
     let mut all: Vec<(String, Vec<usize>)> = Vec::new();
     for (k, row) in sheet.rows.iter().enumerate() {
-        let label = row[run.place].to_string();
+        let label = match &sheet.labels {
+            Some((place, labels)) if *place == run.place => labels[k].clone(),
+            _ => row[run.place].to_string(),
+        };
         match all.iter_mut().find(|(known, _)| *known == label) {
             Some((_, rows)) => rows.push(k),
             None => all.push((label, vec![k])),

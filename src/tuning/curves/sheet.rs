@@ -71,10 +71,16 @@ pub(super) struct Sheet {
     pub lines: Vec<usize>,
     /// Line of the headings.
     pub heading_line: Option<usize>,
+    /// The column that may hold texts, and its field of each row: a number as any other column writes it where all are numbers.
+    pub labels: Option<(usize, Vec<String>)>,
 }
 
 /// Rows that must be found before columns are believed in.
 const LEAST_ROWS: usize = 5;
+/// Columns that are looked at for texts where no table of numbers is found.
+const MOST_COLUMNS: usize = 40;
+/// Lines in which the heading of the column of runs is looked for.
+const HEADING_LINES: usize = 300;
 /// Longest file in bytes.
 const LONGEST: usize = 200_000_000;
 
@@ -139,12 +145,17 @@ fn number(field: &str, decimal_comma: bool) -> Option<f64> {
 struct Manner {
     delimiter: Delimiter,
     decimal_comma: bool,
+    /// The column that may hold texts, which count as not a number.
+    label: Option<usize>,
 }
 
 impl Manner {
     fn row(self, line: &str) -> Option<Vec<f64>> {
         let fields = self.delimiter.split(line);
-        let numbers = fields.iter().map(|field| number(field, self.decimal_comma));
+        let numbers = fields.iter().enumerate().map(|(k, field)| {
+            let text = (self.label == Some(k)).then_some(f64::NAN);
+            number(field, self.decimal_comma).or(text)
+        });
         let numbers: Option<Vec<f64>> = numbers.collect();
         numbers.filter(|row| row.len() >= 2)
     }
@@ -180,8 +191,14 @@ impl Manner {
     }
 }
 
-/// Finds the columns in a text.
-pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, CurveFileError> {
+/// Finds the columns in a text. `runs` is the heading or the number of the column that tells runs apart, where it is stated: it
+/// may hold texts.
+pub(super) fn sheet(
+    path: &Path,
+    text: &str,
+    form: SheetForm,
+    runs: Option<&str>,
+) -> Result<Sheet, CurveFileError> {
     let lines: Vec<(usize, &str)> = text
         .lines()
         .enumerate()
@@ -192,22 +209,26 @@ pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, C
         let help = "export the curve again, with time, temperature and mass";
         return Err(CurveFileError::new(path, None, "it is empty", help));
     }
-    let manner = manner(path, &lines, form)?;
+    let manner = manner(path, &lines, form, runs)?;
     let (longest, _, width) = manner.stretch(&lines);
     let start = manner.first_row(&lines, width).unwrap_or(longest);
     let above = &lines[..start];
     let (headings, heading_line, units) = headings(above, manner.delimiter, width);
-    let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+    let (mut rows, mut numbers, mut labels) = (Vec::new(), Vec::new(), Vec::new());
     for &(line, text) in &lines[start..] {
         let row = manner.row(text).filter(|row| row.len() == width);
+        let fields = manner.delimiter.split(text);
         let Some(row) = row else {
-            let fields = manner.delimiter.split(text);
-            let wrong = fields
-                .iter()
-                .find(|one| number(one, manner.decimal_comma).is_none());
+            let wrong = fields.iter().enumerate().find(|(k, one)| {
+                manner.label != Some(*k) && number(one, manner.decimal_comma).is_none()
+            });
             let (fact, help) = match wrong {
-                Some(wrong) if fields.len() == width => (
-                    format!("\"{}\" is not a number", short(wrong)),
+                Some((k, wrong)) if fields.len() == width => (
+                    format!(
+                        "\"{}\" is not a number in {}",
+                        short(wrong),
+                        column_name(k, &headings)
+                    ),
                     "correct or remove the line; lines of text belong above the columns",
                 ),
                 _ => (
@@ -222,14 +243,64 @@ pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, C
         };
         rows.push(row);
         numbers.push(line);
+        labels.extend(
+            manner
+                .label
+                .and_then(|k| fields.get(k))
+                .map(|one| (*one).to_owned()),
+        );
     }
+    let plain: Option<Vec<String>> = labels
+        .iter()
+        .map(|one| Some(number(one, manner.decimal_comma)?.to_string()))
+        .collect();
     Ok(Sheet {
         headings,
         units,
         rows,
         lines: numbers,
         heading_line,
+        labels: manner.label.map(|k| (k, plain.unwrap_or(labels))),
     })
+}
+
+/// A column for messages, by its number and its heading.
+fn column_name(place: usize, headings: &[String]) -> String {
+    match headings.get(place).filter(|name| !name.is_empty()) {
+        Some(name) => format!("column {}, \"{name}\"", place + 1),
+        None => format!("column {}", place + 1),
+    }
+}
+
+/// Place of the column that tells runs apart among the fields of its heading's line, or by its number.
+fn place_of_runs(
+    lines: &[(usize, &str)],
+    delimiter: Delimiter,
+    stated: Option<&str>,
+) -> Option<usize> {
+    let means = |field: &str| match stated {
+        Some(wanted) => {
+            field.trim() == wanted.trim() || super::columns::parted(field).0 == wanted.trim()
+        }
+        None => field.trim().eq_ignore_ascii_case("run"),
+    };
+    let is_number = |field: &&str| {
+        [false, true]
+            .iter()
+            .any(|&comma| number(field, comma).is_some())
+    };
+    let of_line = |(_, line): &(usize, &str)| {
+        let fields = delimiter.split(line.trim_start_matches('#').trim());
+        // Rows hold numbers, headings do not.
+        let headings = fields.len() > 1 && !fields.iter().any(is_number);
+        headings.then(|| fields.iter().position(|one| means(one)))?
+    };
+    let stated = stated.and_then(|wanted| wanted.trim().parse::<usize>().ok()?.checked_sub(1));
+    lines
+        .iter()
+        .take(HEADING_LINES)
+        .find_map(of_line)
+        .or(stated)
 }
 
 /// The beginning of a field, for messages.
@@ -238,13 +309,20 @@ fn short(field: &str) -> String {
 }
 
 /// How the lines are to be read: the manner with the longest stretch of rows; refused where two are as good and differ.
-fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manner, CurveFileError> {
+fn manner(
+    path: &Path,
+    lines: &[(usize, &str)],
+    form: SheetForm,
+    runs: Option<&str>,
+) -> Result<Manner, CurveFileError> {
     let delimiters = Delimiter::ALL.into_iter();
     let delimiters = delimiters.filter(|one| form.delimiter.is_none_or(|stated| stated == *one));
     let manners = delimiters.flat_map(|delimiter| {
+        let label = place_of_runs(lines, delimiter, runs);
         [false, true].map(|decimal_comma| Manner {
             delimiter,
             decimal_comma,
+            label,
         })
     });
     let stated = |one: &Manner| {
@@ -252,9 +330,10 @@ fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manne
             .is_none_or(|comma| comma == one.decimal_comma)
     };
     let sound = |one: &Manner| !(one.decimal_comma && one.delimiter == Delimiter::Comma);
+    let manners: Vec<Manner> = manners.filter(|one| stated(one) && sound(one)).collect();
     let mut found: Vec<(usize, usize, Manner)> = manners
-        .filter(|one| stated(one) && sound(one))
-        .map(|manner| {
+        .iter()
+        .map(|&manner| {
             let (_, count, width) = manner.stretch(lines);
             (count, width, manner)
         })
@@ -262,6 +341,9 @@ fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manne
         .collect();
     found.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
     let Some(&(count, width, manner)) = found.first() else {
+        if let Some(error) = column_of_texts(path, lines, &manners) {
+            return Err(error);
+        }
         let (line, text) = lines[lines.len() / 2];
         let fact = format!(
             "no table of numbers was found; this line is \"{}\"",
@@ -296,6 +378,36 @@ fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manne
         doubled_commas(path, lines, manner, width)?;
     }
     Ok(manner)
+}
+
+/// What is wrong with a table of which one column holds texts.
+fn column_of_texts(
+    path: &Path,
+    lines: &[(usize, &str)],
+    manners: &[Manner],
+) -> Option<CurveFileError> {
+    let places = (0..MOST_COLUMNS).map(Some);
+    let all = places.flat_map(|label| manners.iter().map(move |&one| Manner { label, ..one }));
+    // Two columns of numbers at least stand beside the texts.
+    let found = all.filter_map(|manner| {
+        let (start, count, width) = manner.stretch(lines);
+        (count >= LEAST_ROWS && width > 2).then_some((count, start, width, manner))
+    });
+    let (_, start, width, manner) = found.max_by_key(|one| one.0)?;
+    let (names, ..) = headings(&lines[..start], manner.delimiter, width);
+    let (line, text) = lines[start];
+    let place = manner.label?;
+    let field = manner
+        .delimiter
+        .split(text)
+        .get(place)
+        .map(|one| short(one))?;
+    let fact = format!(
+        "\"{field}\" is not a number in {}",
+        column_name(place, &names)
+    );
+    let help = "name the column as `columns.run` where it tells runs apart, else leave it out";
+    Some(CurveFileError::new(path, Some(line), fact, help))
 }
 
 /// Refuses commas that are both decimal sign and delimiter: twice as many fields as headings.
@@ -371,7 +483,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Sheet, CurveFileError> {
-        sheet(Path::new("a.csv"), text, SheetForm::default())
+        sheet(Path::new("a.csv"), text, SheetForm::default(), None)
     }
 
     /// Six rows of these fields.
@@ -460,7 +572,8 @@ mod tests {
             [0.5, 99.5]
         );
         let (line, told) = fact(&(table("t;m", "1;2") + "3;x\n"));
-        assert_eq!((line, &told[..]), (Some(8), "\"x\" is not a number"));
+        let expected = "\"x\" is not a number in column 2, \"m\"";
+        assert_eq!((line, &told[..]), (Some(8), expected));
         let (line, told) = fact(&(table("t;m", "1;2") + "3;4;5\n"));
         assert!(
             line == Some(8) && told.contains("3 fields where 2 columns"),
