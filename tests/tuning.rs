@@ -372,6 +372,21 @@ fn files_of_other_instruments_give_the_same_curve() {
             }),
             "units = { mass = \"%\" }",
         ),
+        (
+            curve(
+                "Curve Name:\n  S1, 03.04.2025\nCurve Values:\n  Index       t        Ts        Tr     Value\n        [s]      [°C]      [°C]      [mg]",
+                |t, temp, m| {
+                    format!(
+                        "  {} {:.1} {temp:.3} {:.3} {:.6}",
+                        2.0 * t,
+                        60.0 * t,
+                        temp + 1.2,
+                        0.05 * m
+                    )
+                },
+            ) + "Results:\n  Sample: S1, 5.0000 mg\n",
+            "",
+        ),
     ];
     for (csv, keys) in others {
         let found = read(&csv, keys);
@@ -705,6 +720,32 @@ fn runs_may_be_told_apart_by_texts() {
     ] {
         assert!(told.contains(word), "{told}");
     }
+}
+
+/// Signals of TA Instruments in UTF-16, and headings that are not known.
+#[test]
+fn headings_of_other_instruments_are_recognised_or_shown() {
+    let head = "Version\tV1\nNsig\t3\nSig1\tTime (min)\nSig2 Temperature (°C)\nSig3\tWeight (mg)\nOrgFile a.001\nStartOfData";
+    let text = curve(head, |t, temp, m| format!("{t}\t{temp}\t{:.6}", 0.05 * m));
+    for mark in [&[0xff, 0xfe][..], &[]] {
+        let folder = tempfile::tempdir().unwrap();
+        let units = text.encode_utf16().flat_map(u16::to_le_bytes);
+        let bytes: Vec<u8> = mark.iter().copied().chain(units).collect();
+        fs::write(folder.path().join("a.csv"), bytes).unwrap();
+        let case = parse_tuning(&folder.path().join("case.toml"), CASE, &[]);
+        let case = case.map_err(|errors| errors.to_string()).unwrap();
+        let run = &case.targets[0].run;
+        assert_eq!((run.times[1], run.programme.at(0.0).0), (30.0, 573.15));
+        assert!((run.sample_mass / 5e-6 - 1.0).abs() < 1e-3);
+    }
+    let unknown = curve("Clock Oven Sample Signal A", |t, temp, m| {
+        format!("{t} {temp} {m:.4}")
+    });
+    let told = told(CASE, &unknown);
+    assert!(
+        told.contains("the line above them is \"Clock Oven Sample Signal A\""),
+        "{told}"
+    );
 }
 
 fn tune(words: &[&str]) -> (i32, String) {

@@ -132,17 +132,28 @@ fn no_column(path: &Path, sheet: &Sheet, column: CurveColumn) -> CurveFileError 
         .iter()
         .map(|name| format!("\"{name}\""))
         .collect();
-    let fact = format!(
-        "no column was recognised as the {key} among {}",
-        names.join(", ")
-    );
+    let (line, of) = match &sheet.unknown {
+        Some((line, text)) => (
+            Some(*line),
+            format!(
+                "the {} columns, whose headings were not recognised: the line above them is \"{text}\"",
+                names.len()
+            ),
+        ),
+        None if sheet.heading_line.is_none() => (
+            None,
+            format!("the {} columns, which have no headings", names.len()),
+        ),
+        None => (sheet.heading_line, names.join(", ")),
+    };
+    let fact = format!("no column was recognised as the {key} among {of}");
     let rate = match column {
         CurveColumn::Temperature => ", or state `heating_rate`",
         _ => "",
     };
     let help =
         format!("name it as `columns.{key}` of the target, by its heading or its number{rate}");
-    CurveFileError::new(path, sheet.heading_line, fact, help)
+    CurveFileError::new(path, line, fact, help)
 }
 
 /// Rows by the value of the column of runs, in the order of the file.

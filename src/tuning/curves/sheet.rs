@@ -73,6 +73,8 @@ pub(super) struct Sheet {
     pub heading_line: Option<usize>,
     /// The column that may hold texts, and its field of each row: a number as any other column writes it where all are numbers.
     pub labels: Option<(usize, Vec<String>)>,
+    /// The last line above the rows, and its number, where it was not understood as headings.
+    pub unknown: Option<(usize, String)>,
 }
 
 /// Rows that must be found before columns are believed in.
@@ -81,6 +83,8 @@ const LEAST_ROWS: usize = 5;
 const MOST_COLUMNS: usize = 40;
 /// Lines in which the heading of the column of runs is looked for.
 const HEADING_LINES: usize = 300;
+/// Letters of unknown headings that a message shows.
+const LONGEST_HEADINGS: usize = 160;
 /// Longest file in bytes.
 const LONGEST: usize = 200_000_000;
 
@@ -102,9 +106,21 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<String, CurveFileError
         });
         String::from_utf16_lossy(&pairs.collect::<Vec<u16>>())
     };
+    // Letters of instruments' files are in the lower half of UTF-16, with or without its mark.
+    let halves = |from: usize| {
+        bytes.len() >= 8
+            && bytes
+                .iter()
+                .skip(from)
+                .step_by(2)
+                .take(4)
+                .all(|one| *one == 0)
+    };
     let text = match bytes {
         [0xff, 0xfe, rest @ ..] => wide(true, rest),
         [0xfe, 0xff, rest @ ..] => wide(false, rest),
+        _ if halves(1) => wide(true, bytes),
+        _ if halves(0) => wide(false, bytes),
         [0xef, 0xbb, 0xbf, rest @ ..] => latin_or_utf8(rest),
         _ => latin_or_utf8(bytes),
     };
@@ -215,10 +231,13 @@ pub(super) fn sheet(
     let above = &lines[..start];
     let (headings, heading_line, units) = headings(above, manner.delimiter, width);
     let (mut rows, mut numbers, mut labels) = (Vec::new(), Vec::new(), Vec::new());
-    for &(line, text) in &lines[start..] {
+    for (place, &(line, text)) in lines.iter().enumerate().skip(start) {
         let row = manner.row(text).filter(|row| row.len() == width);
         let fields = manner.delimiter.split(text);
         let Some(row) = row else {
+            if closes(manner, &lines[place..]) {
+                break;
+            }
             let wrong = fields.iter().enumerate().find(|(k, one)| {
                 manner.label != Some(*k) && number(one, manner.decimal_comma).is_none()
             });
@@ -254,6 +273,7 @@ pub(super) fn sheet(
         .iter()
         .map(|one| Some(number(one, manner.decimal_comma)?.to_string()))
         .collect();
+    let unknown = headings.iter().all(String::is_empty).then(|| above.last());
     Ok(Sheet {
         headings,
         units,
@@ -261,6 +281,10 @@ pub(super) fn sheet(
         lines: numbers,
         heading_line,
         labels: manner.label.map(|k| (k, plain.unwrap_or(labels))),
+        unknown: unknown.flatten().map(|(line, text)| {
+            let shown = text.trim().chars().take(LONGEST_HEADINGS);
+            (*line, shown.collect())
+        }),
     })
 }
 
@@ -270,6 +294,15 @@ fn column_name(place: usize, headings: &[String]) -> String {
         Some(name) => format!("column {}, \"{name}\"", place + 1),
         None => format!("column {}", place + 1),
     }
+}
+
+/// True of lines that follow the table of an instrument, such as its results: a line without any number, and no row after it.
+fn closes(manner: Manner, lines: &[(usize, &str)]) -> bool {
+    let is_number = |field: &&str| number(field, manner.decimal_comma).is_some();
+    let mut lines = lines.iter().map(|(_, line)| *line);
+    let first = lines.next().unwrap_or_default();
+    let worded = !manner.delimiter.split(first).iter().any(is_number);
+    worded && lines.all(|line| manner.row(line).is_none())
 }
 
 /// Place of the column that tells runs apart among the fields of its heading's line, or by its number.
@@ -442,6 +475,9 @@ fn headings(
     width: usize,
 ) -> (Vec<String>, Option<usize>, Vec<String>) {
     let none = vec![String::new(); width];
+    if let Some((names, line)) = signals(above, width) {
+        return (names, Some(line), none);
+    }
     let fields = |line: &str| -> Option<Vec<String>> {
         let line = line.trim_start_matches('#').trim();
         // Headings may hold spaces: where spaces part columns, those between them are wider or tabulators.
@@ -464,18 +500,43 @@ fn headings(
     let Some((line, last)) = above.last() else {
         return (none.clone(), None, none);
     };
+    let before = above.len().checked_sub(2).map(|place| above[place]);
     let Some(last) = fields(last) else {
-        return (none.clone(), None, none);
+        // Fewer units than headings: the first columns, such as an index, have none.
+        let units = delimiter.split(last.trim());
+        let few = units.len() < width && units.iter().all(|one| super::curve_column::is_unit(one));
+        let names = before.filter(|_| few);
+        let names = names.and_then(|(line, text)| Some((line, fields(text)?)));
+        let Some((line, names)) = names else {
+            return (none.clone(), None, none);
+        };
+        let mut below = vec![String::new(); width - units.len()];
+        below.extend(units.iter().map(|one| (*one).to_owned()));
+        return (names, Some(line), below);
     };
     // A line of units below the headings: all of them short, and the line above has as many fields.
     let is_units = last
         .iter()
         .all(|one| one.is_empty() || super::curve_column::is_unit(one));
-    let before = above.len().checked_sub(2).map(|place| above[place]);
     match before.and_then(|(line, text)| Some((line, fields(text)?))) {
         Some((line, names)) if is_units => (names, Some(line), last),
         _ => (last, Some(*line), none),
     }
+}
+
+/// Headings of TA Instruments: a line `Sig1 Time (min)` for each column, and the line of the first.
+fn signals(above: &[(usize, &str)], width: usize) -> Option<(Vec<String>, usize)> {
+    let of = |k: usize| {
+        above.iter().find_map(|(line, text)| {
+            let name = text.trim().strip_prefix(&format!("Sig{k}"))?;
+            let name = name.strip_prefix(|c: char| !c.is_alphanumeric())?;
+            Some((*line, name.trim().to_owned()))
+        })
+    };
+    let all: Option<Vec<(usize, String)>> = (1..=width).map(of).collect();
+    let all = all?;
+    let line = all.first()?.0;
+    Some((all.into_iter().map(|one| one.1).collect(), line))
 }
 
 #[cfg(test)]
@@ -587,6 +648,8 @@ mod tests {
         let of = |bytes: &[u8]| decode(Path::new("a"), bytes);
         assert_eq!(of(b"T/\xb0C").unwrap(), "T/°C");
         assert_eq!(of(b"\xff\xfea\0;\0").unwrap(), "a;");
+        assert_eq!(of(b"S\0i\0g\x001\0").unwrap(), "Sig1");
+        assert_eq!(of(b"\0S\0i\0g\x001").unwrap(), "Sig1");
         assert_eq!(of("\u{feff}a".as_bytes()).unwrap(), "a");
         assert!(of(b"PK\x03\x04").is_err() && of(b"a\0b").is_err());
     }
