@@ -748,6 +748,42 @@ fn headings_of_other_instruments_are_recognised_or_shown() {
     );
 }
 
+/// 20 K/min after a hold of 4 min.
+fn held() -> String {
+    let mut text = "Time (min),Temp (degC),Mass (%)\n".to_owned();
+    for k in 0..80 {
+        let (time, temperature) = (0.5 * f64::from(k), 300.0 + 10.0 * f64::from((k - 8).max(0)));
+        let mass = 100.0 - 40.0 / (1.0 + (-(f64::from(k) - 43.0) / 3.0).exp());
+        text += &format!("{time},{temperature},{mass:.4}\n");
+    }
+    text
+}
+
+/// The furnace of a lumped model is checked as that of a kinetic one, by the ramp and by the time of its start.
+#[test]
+fn a_stated_heating_rate_that_a_lumped_model_cannot_have_is_refused() {
+    let lumped = CASE.replace("\"kinetic\"", "\"lumped\"")
+        + "sample_mass = \"5 mg\"\nstart_temperature = \"300 degC\"\n";
+    let stated = |rate: f64| format!("{lumped}heating_rate = \"{rate} K/min\"\n");
+    assert_eq!(told(&stated(20.0), &plain()), "");
+    let refused = told(&stated(15.0), &plain());
+    assert!(
+        refused.contains("the file rise by 20.0000 K/min"),
+        "{refused}"
+    );
+    // The mean over the hold is 18 K/min, and a furnace without it is 80 K ahead.
+    let refused = told(&stated(18.0), &held());
+    assert!(
+        refused.contains("the file rise by 20.0000 K/min"),
+        "{refused}"
+    );
+    let refused = told(&stated(20.0), &held());
+    assert!(
+        refused.contains("is 20.0000 K/min from 300.0 °C on, 80 K above"),
+        "{refused}"
+    );
+}
+
 fn tune(words: &[&str]) -> (i32, String) {
     calcine("tune", words)
 }

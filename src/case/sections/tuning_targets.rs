@@ -15,6 +15,9 @@ use crate::tuning::warn;
 
 /// A stated heating rate may differ from that of the file's temperatures by this share: a sample lags behind its furnace.
 const OTHER_RATE: f64 = 0.1;
+/// That lag in s, and what the start of a furnace may differ by in K: half of the rows are nearer to the stated temperatures.
+const LONGEST_LAG: f64 = 120.0;
+const OTHER_START: f64 = 15.0;
 /// Below this temperature in K no furnace begins.
 const COLD: f64 = 230.0;
 /// A value that stands alone is above or below both of its neighbours, by so many times the change from most values to the next, and by this share of all
@@ -216,13 +219,31 @@ impl<'t, 'a> Target<'t, 'a> {
 
     /// Refuses a stated heating rate that the file's own temperatures contradict.
     fn agrees(&self, rate: f64, run: &MeasuredRun) -> Option<()> {
-        let (first, last) = (run.temperature.first(), run.temperature.last());
-        let (Some(first), Some(last), Some(span)) = (first, last, run.time.last()) else {
+        // What is wrong with the temperatures themselves is told where they are taken.
+        let measured = TemperatureProgramme::new(run.time.clone(), run.temperature.clone());
+        let (Ok(measured), Some(start)) = (measured, self.start_temperature) else {
             return Some(());
         };
-        let own = (last - first) / span;
+        let own = measured.ramp_rate();
+        let own = own.unwrap_or_else(|| measured.heating_rate());
         if (own / rate - 1.0).abs() <= OTHER_RATE {
-            return Some(());
+            let rows = run.time.iter().zip(&run.temperature);
+            let mut above: Vec<f64> = rows.map(|(time, own)| start + rate * time - own).collect();
+            above.sort_by(f64::total_cmp);
+            let middle = above[above.len() / 2];
+            if middle.abs() <= OTHER_START.max(LONGEST_LAG * rate) {
+                return Some(());
+            }
+            let rule = format!(
+                "is {:.4} K/min from {:.1} °C on, {:.0} K {} the temperatures of the file",
+                60.0 * rate,
+                start - 273.15,
+                middle.abs(),
+                if middle > 0.0 { "above" } else { "below" }
+            );
+            let help = "cut the rows before the ramp, state `start_temperature`, or remove it, and the temperatures of the file are taken";
+            self.table.fail("heating_rate", rule, help);
+            return None;
         }
         let rule = format!(
             "is {:.4} K/min, but the temperatures of the file rise by {:.4} K/min",
