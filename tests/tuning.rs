@@ -784,6 +784,59 @@ fn a_stated_heating_rate_that_a_lumped_model_cannot_have_is_refused() {
     );
 }
 
+/// A hold at the start is no part of the heating rate, of which targets have their names.
+#[test]
+fn targets_have_the_heating_rate_of_their_ramp() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), held()).unwrap();
+    let path = folder.path().join("case.toml");
+    fs::write(&path, CASE).unwrap();
+    let (code, told_of_check) = calcine("check", &[path.to_str().unwrap()]);
+    assert_eq!(code, 0, "{told_of_check}");
+    assert!(
+        told_of_check
+            .contains("target 20 K/min: mass over 80 times, 300.0 to 1010.0 °C at 20 K/min"),
+        "{told_of_check}"
+    );
+    let refused = told(&format!("{CASE}heating_rate = \"5\"\n"), &plain());
+    assert!(
+        refused.contains("needs a unit, for example \"5 K/min\""),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_file_that_two_targets_name_is_told() {
+    let twice = format!("{CASE}[[targets]]\nfile = \"a.csv\"\nfit = false\n");
+    let [told] = &warned(&twice, &[("a.csv", &plain())])[..] else {
+        panic!("one warning");
+    };
+    assert!(told.starts_with("a.csv is named by two targets"), "{told}");
+}
+
+/// A loss that is tuned need not be stated, where the curves do not tell it either.
+#[test]
+fn a_mass_loss_that_is_tuned_need_not_be_stated() {
+    let rates = curve("Time (min),Temp (degC),DTG (%/min)", |t, temp, m| {
+        format!("{t},{temp},{:.4}", (100.0 - m) * (m - 60.0) / 60.0)
+    });
+    let missing = told(CASE, &rates);
+    assert!(missing.contains("mass_loss` is missing"), "{missing}");
+    let bounds = "[parameters.mass_loss]\nlow = 0.1\nhigh = 1\n";
+    let case = CASE.replace("[[targets]]", &format!("{bounds}[[targets]]"));
+    assert_eq!(told(&case, &rates), "");
+    let two = case
+        .replace(
+            "laws = [\"F1\"]",
+            "name = \"a\"\nreactant = 0.5\n[[reactions]]\nname = \"b\"\nreactant = 0.5\nmass_loss = 0.4",
+        )
+        .replace("[parameters.", "[parameters.\"a.")
+        .replace("pre_exponential]", "pre_exponential\"]")
+        .replace("activation_energy]", "activation_energy\"]")
+        .replace("mass_loss]", "mass_loss\"]");
+    assert_eq!(told(&two, &plain()), "");
+}
+
 fn tune(words: &[&str]) -> (i32, String) {
     calcine("tune", words)
 }
@@ -849,6 +902,8 @@ fn the_shipped_twin_gives_back_its_numbers_and_goes_on_with_the_same_bits() {
         assert!(same, "{file}");
     }
     assert_eq!(summary(&two)["tuning"]["parameters"], *parameters);
+    let evaluations = |of: &Path| summary(of)["tuning"]["evaluations"].clone();
+    assert_eq!(evaluations(&two), evaluations(&one));
     let (code, text) = tune(&[case, "--set", short, "--out", first]);
     assert!(
         code == 2 && text.contains("holds the results of another tuning"),

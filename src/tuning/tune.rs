@@ -155,6 +155,8 @@ impl Bench<'_> {
         let front = search_front(&watched, &settings, &known, self.stop, |generation, new| {
             observer.generation(stage, generation, new);
         })?;
+        // A tuning that goes on counts as one that was not interrupted.
+        self.count.fetch_add(front.replayed, Ordering::Relaxed);
         let objective = choice.objectives.first().copied();
         let best = match objective {
             Some(objective) => front.archive.best(objective).map(|one| one.genes.clone()),

@@ -36,6 +36,13 @@ pub(crate) fn same_curve(one: &str, other: &str) -> String {
     )
 }
 
+/// One file in two targets.
+pub(crate) fn same_file(file: &str) -> String {
+    format!(
+        "{file} is named by two targets with the same columns: what both compare counts twice, or is fitted where it is kept back; remove one of them"
+    )
+}
+
 /// A mass at the start that a curve of shares has no use for.
 pub(crate) fn weighs_no_share(unit: &str) -> String {
     format!(
@@ -173,10 +180,12 @@ pub(super) fn one_rate(
         return None;
     }
     let law = laws.get(chosen).map_or("", |one| one.law);
+    let ramps = case.targets.iter();
+    let ramp = ramps.filter_map(|one| one.run.programme.ramp_rate()).next();
     let mut text = format!(
         "all targets have one heating rate, {} K/min: energy, pre-exponential factor and law cannot be told apart by it. The energy of \
          {} kJ/mol holds only if {law} is the law",
-        short3(60.0 * high),
+        short3(60.0 * ramp.unwrap_or(high)),
         short3(energy.value / 1e3)
     );
     let others = laws.iter();

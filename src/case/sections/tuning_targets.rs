@@ -6,6 +6,7 @@ use calcine_tuning::model::HeatingRun;
 use calcine_tuning::{ComparedQuantity, TargetCurve, TemperatureProgramme};
 
 use crate::case::table::TableReader;
+use crate::case::units::short3;
 use crate::case::words::{DecimalName, DelimiterName, TunedModel};
 use crate::tuning::curves::{
     CurveColumn, CurveFile, CurveFileError, CurveRules, MassAtStart, MeasuredRun, SheetForm,
@@ -45,11 +46,29 @@ impl Targets {
     /// Reads all targets of a file; problems are recorded.
     pub fn read(root: &TableReader<'_>, folder: &Path, of: Option<TunedModel>) -> Self {
         let mut read = Self::default();
+        let mut sources: Vec<(PathBuf, CurveFile, Vec<ComparedQuantity>)> = Vec::new();
+        let mut repeated = None;
         for table in &root.tables("targets") {
             let mut target = Target::of(table, folder);
             read.files.extend(target.path.clone());
             target.lumped = of == Some(TunedModel::Lumped);
-            for (curve, start, told) in target.curves().unwrap_or_default() {
+            let curves = target.curves().unwrap_or_default();
+            if let (Some(path), Some((curve, ..))) = (&target.path, curves.first()) {
+                let quantities = curve.values.iter().map(|one| one.0);
+                let quantities: Vec<ComparedQuantity> = quantities.collect();
+                let again = sources.iter().any(|(file, form, known)| {
+                    file == path
+                        && form.columns == target.file.columns
+                        && known.iter().any(|one| quantities.contains(one))
+                });
+                if again {
+                    repeated = path
+                        .file_name()
+                        .map(|name| name.to_string_lossy().into_owned());
+                }
+                sources.push((path.clone(), target.file.clone(), quantities));
+            }
+            for (curve, start, told) in curves {
                 read.warnings.extend(told);
                 if let Some(start) = &start
                     && target.sample_mass.is_some()
@@ -90,6 +109,8 @@ impl Targets {
         });
         if let Some((one, other)) = twins {
             read.warnings.push(warn::same_curve(&one.name, &other.name));
+        } else if let Some(file) = repeated {
+            read.warnings.push(warn::same_file(&file));
         }
         read
     }
@@ -255,6 +276,16 @@ impl<'t, 'a> Target<'t, 'a> {
         None
     }
 
+    /// Name of a curve that has none: the rate of its ramp, or its file, with the run of it.
+    fn rate_or_file(&self, programme: &TemperatureProgramme, label: &str) -> String {
+        if let Some(rate) = programme.ramp_rate() {
+            return format!("{} K/min", short3(60.0 * rate));
+        }
+        let stem = self.path.as_ref().and_then(|path| path.file_stem());
+        let stem = stem.unwrap_or_default().to_string_lossy();
+        format!("{stem} {label}").trim_end().to_owned()
+    }
+
     fn curve(&self, run: MeasuredRun, several: bool) -> Option<TargetCurve> {
         let programme = match self.heating_rate {
             Some(rate) => {
@@ -322,7 +353,6 @@ impl<'t, 'a> Target<'t, 'a> {
                 .fail("compare", "is empty", "name mass, loss_rate or temperature");
             return None;
         }
-        let rate = programme.heating_rate() * 60.0;
         let start_values = run.start.as_ref().and_then(|one| one.rows);
         let curve = TargetCurve {
             name: match &self.name {
@@ -332,7 +362,7 @@ impl<'t, 'a> Target<'t, 'a> {
                 None if !run.label.is_empty() && run.label.parse::<f64>().is_err() => {
                     run.label.clone()
                 }
-                None => format!("{:.3} K/min", rate).replace(".000", ""),
+                None => self.rate_or_file(&programme, &run.label),
             },
             run: HeatingRun {
                 programme,
