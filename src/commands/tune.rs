@@ -291,7 +291,7 @@ fn number(value: f64) -> String {
 fn rate(target: &TargetCurve) -> String {
     let programme = &target.run.programme;
     match programme.ramp_rate() {
-        Some(rate) => format!("{} K/min", figure(60.0 * rate, 4)),
+        Some(rate) => format!("{} K/min", figure(60.0 * rate, 3)),
         None => format!(
             "{} K/min in the mean, with holds",
             figure(60.0 * programme.heating_rate(), 3)

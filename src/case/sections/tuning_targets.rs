@@ -262,7 +262,7 @@ impl<'t, 'a> Target<'t, 'a> {
                 middle.abs(),
                 if middle > 0.0 { "above" } else { "below" }
             );
-            let help = "cut the rows before the ramp, state `start_temperature`, or remove it, and the temperatures of the file are taken";
+            let help = "cut the rows before the ramp, state `start_temperature`, or remove `heating_rate`: the temperatures of the file are taken then";
             self.table.fail("heating_rate", rule, help);
             return None;
         }
