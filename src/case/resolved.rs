@@ -48,6 +48,8 @@ pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
     let exchanging = case.chemistry.reactions.iter();
     for one in exchanging.filter(|one| !one.gases.is_empty()) {
         let found = thiele(case, population, (one, gas), diameter);
+        // Of solids that are not there at the start there is nothing to tell.
+        let found = found.filter(|(number, _)| *number > 0.0);
         all.extend(found.into_iter().flat_map(|(number, kelvin)| {
             let share = material.radial.grid.share_of_layer(number);
             [
@@ -178,7 +180,7 @@ fn unresolved_layers(case: &Case) -> Vec<String> {
             // The layer of a solid that is used up in place moves on as a front.
             let lasts = shrinks || one.solids.iter().all(|solid| solid.1 >= 0.0);
             let found = thiele(case, population, (one, gas), diameter);
-            let Some((number, kelvin)) = found.filter(|_| uses_gas && lasts) else {
+            let Some((number, kelvin)) = found.filter(|one| one.0 > 0.0 && uses_gas && lasts) else {
                 continue;
             };
             let share = grid.share_of_layer(number);

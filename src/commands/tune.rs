@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use calcine_tuning::TuningError;
 use calcine_tuning::search::SearchEvaluation;
+use calcine_tuning::{TargetCurve, TuningError};
 use clap::Args;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
@@ -287,6 +287,18 @@ fn number(value: f64) -> String {
     }
 }
 
+/// The rate of a target's ramp, or where it holds longer than it heats, its mean one.
+fn rate(target: &TargetCurve) -> String {
+    let programme = &target.run.programme;
+    match programme.ramp_rate() {
+        Some(rate) => format!("{} K/min", figure(60.0 * rate, 3)),
+        None => format!(
+            "{} K/min in the mean, with holds",
+            figure(60.0 * programme.heating_rate(), 3)
+        ),
+    }
+}
+
 /// `calcine check` of a tuning.
 pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
     let case =
@@ -318,13 +330,13 @@ pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
         );
         let temperature = |time: f64| target.run.programme.at(time).0 - 273.15;
         text += &format!(
-            "    target {}: {} over {} times, {:.1} to {:.1} °C at {:.3} K/min\n",
+            "    target {}: {} over {} times, {:.1} to {:.1} °C at {}\n",
             target.name,
             names.join(", "),
             target.run.times.len(),
             temperature(from),
             temperature(to),
-            60.0 * target.run.programme.heating_rate()
+            rate(target)
         );
         if let Some(start) = start {
             let from = match start.rows {
@@ -341,10 +353,10 @@ pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
     }
     for target in &case.kept_back {
         text += &format!(
-            "    target {}: kept back, {} times at {:.3} K/min\n",
+            "    target {}: kept back, {} times at {}\n",
             target.name,
             target.run.times.len(),
-            60.0 * target.run.programme.heating_rate()
+            rate(target)
         );
     }
     let laws = case.model.laws.iter().map(|one| one.law.name);

@@ -69,14 +69,19 @@ pub struct LawCandidate {
 }
 
 impl SampleSpec {
-    /// The model with one of the laws.
-    pub fn model(&self, candidate: &LawCandidate) -> Box<dyn SampleModel> {
+    /// The reactions with one of the laws.
+    pub fn reactions_with(&self, candidate: &LawCandidate) -> Vec<SampleReaction> {
         let mut reactions = self.reactions.clone();
         if let [only] = &mut reactions[..] {
             only.law = candidate.law;
             only.law_numbers.clone_from(&candidate.numbers);
         }
-        let reactions = ReactionSet::new(reactions);
+        reactions
+    }
+
+    /// The model with one of the laws.
+    pub fn model(&self, candidate: &LawCandidate) -> Box<dyn SampleModel> {
+        let reactions = ReactionSet::new(self.reactions_with(candidate));
         match &self.crucible {
             None => Box::new(KineticModel::new(reactions)),
             Some((settings, numbers)) => {

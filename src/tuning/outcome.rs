@@ -18,6 +18,18 @@ pub struct LawFit {
     pub values: Vec<(String, f64)>,
     /// Root mean square of the differences, objective by objective.
     pub errors: Vec<f64>,
+    /// Share of the sum of squares about a sample that does not react that is left.
+    pub left: f64,
+}
+
+/// A law that leaves more than this share explains nothing: a wrong law leaves less than half of it.
+const EXPLAINS_NOTHING: f64 = 0.9;
+
+impl LawFit {
+    /// True where the fit is no better than no reaction: its values mean nothing.
+    pub fn explains_nothing(&self) -> bool {
+        self.left > EXPLAINS_NOTHING
+    }
 }
 
 /// One parameter.

@@ -155,6 +155,8 @@ impl Bench<'_> {
         let front = search_front(&watched, &settings, &known, self.stop, |generation, new| {
             observer.generation(stage, generation, new);
         })?;
+        // A tuning that goes on counts as one that was not interrupted.
+        self.count.fetch_add(front.replayed, Ordering::Relaxed);
         let objective = choice.objectives.first().copied();
         let best = match objective {
             Some(objective) => front.archive.best(objective).map(|one| one.genes.clone()),
@@ -306,12 +308,7 @@ fn problem_of(
     let space = case.space_of(&*model)?;
     let mut problem =
         SampleProblem::new(&*model, space, targets.to_vec(), case.method.differences)?;
-    if let [only] = &case.model.reactions[..]
-        && only.name.is_empty()
-    {
-        let law = (candidate.law.make)(&candidate.numbers.clone().into());
-        problem.guess_by(&*law, &*model, ["pre_exponential", "activation_energy"]);
-    }
+    problem.guess_by(&case.model.reactions_with(candidate));
     Ok(problem)
 }
 
@@ -366,11 +363,20 @@ pub fn tune_sample(
                 .zip(problem.space().values(&search.fitted.places))
                 .collect(),
             errors: out.iter().map(|list| root_mean_square(list)).collect(),
+            left: problem.left_of_no_reaction(&search.fitted.places)?,
         });
     }
     let chosen = choose(&numbers).unwrap_or(0);
+    if laws[chosen].explains_nothing() {
+        let names: Vec<&str> = laws.iter().map(|one| one.law).collect();
+        return Err(TuningError::NothingReacts {
+            laws: names.join(", "),
+            left: 100.0 * laws[chosen].left,
+        });
+    }
     let (_, problem, search) = fits.swap_remove(chosen);
     let mut warnings = case.warnings.clone();
+    warnings.extend(warn::explain_nothing(&laws));
     let known = bench.known(&problem, &search.fitted, &mut warnings, observer)?;
     observer.stage("energies without a law");
     let energies = energies(case);

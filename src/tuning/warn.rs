@@ -36,6 +36,13 @@ pub(crate) fn same_curve(one: &str, other: &str) -> String {
     )
 }
 
+/// One file in two targets.
+pub(crate) fn same_file(file: &str) -> String {
+    format!(
+        "{file} is named by two targets with the same columns: what both compare counts twice, or is fitted where it is kept back; remove one of them"
+    )
+}
+
 /// A mass at the start that a curve of shares has no use for.
 pub(crate) fn weighs_no_share(unit: &str) -> String {
     format!(
@@ -136,6 +143,19 @@ pub(super) fn pairs(space: &ParameterSpace, pairs: &[ParameterPair]) -> Vec<Stri
     told.collect()
 }
 
+/// Laws whose best fit is no better than no reaction.
+pub(super) fn explain_nothing(laws: &[LawFit]) -> Option<String> {
+    let names = laws.iter().filter(|one| one.explains_nothing());
+    let names: Vec<&str> = names.map(|one| one.law).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "within the bounds the best fit by {} is no better than a sample that does not react: these values mean nothing; widen the \
+             bounds of pre_exponential and activation_energy, or raise `method.samples`",
+            names.join(", ")
+        )
+    })
+}
+
 /// One heating rate cannot tell energy, pre-exponential factor and law apart.
 pub(super) fn one_rate(
     case: &TuningCase,
@@ -160,13 +180,16 @@ pub(super) fn one_rate(
         return None;
     }
     let law = laws.get(chosen).map_or("", |one| one.law);
+    let ramps = case.targets.iter();
+    let ramp = ramps.filter_map(|one| one.run.programme.ramp_rate()).next();
     let mut text = format!(
         "all targets have one heating rate, {} K/min: energy, pre-exponential factor and law cannot be told apart by it. The energy of \
          {} kJ/mol holds only if {law} is the law",
-        short3(60.0 * high),
+        short3(60.0 * ramp.unwrap_or(high)),
         short3(energy.value / 1e3)
     );
-    let others = laws.iter().filter(|one| one.law != law);
+    let others = laws.iter();
+    let others = others.filter(|one| one.law != law && !one.explains_nothing());
     let others = others.filter_map(|one| {
         let energy = one
             .values

@@ -59,6 +59,18 @@ pub enum TuningError {
         /// What the last one said.
         cause: String,
     },
+    /// A best fit that explains nothing of the curves.
+    #[error(
+        "the best fit of {laws} is no better than a sample that does not react: {left:.0} % of its sum of squares is left. Widen the \
+         bounds of pre_exponential and activation_energy, so that the reaction falls into the temperatures of the curves, raise \
+         `method.samples`, or fit the mass first: compare = [\"mass\"]"
+    )]
+    NothingReacts {
+        /// The laws that were fitted.
+        laws: String,
+        /// Share of the sum of squares that is left, in %.
+        left: f64,
+    },
     /// Interrupted from outside.
     #[error("the tuning was interrupted")]
     Interrupted,

@@ -1,6 +1,6 @@
 //! Tuning of models to measured or computed curves.
 //!
-//! Knows neither cases nor solvers. Equations and sources: docs/theory.md, TUN-1 to TUN-12.
+//! Knows neither cases nor solvers. Equations and sources: docs/theory.md, TUN-1 to TUN-14.
 //!
 //! - [`TemperatureProgramme`], [`law`], [`model`]: models of a sample that is heated;
 //! - [`ParameterSpace`], [`TuningProblem`]: what is tuned, and against what;

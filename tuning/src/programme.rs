@@ -15,6 +15,11 @@ const GAUSS: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
+/// Parts of its span by whose slopes a ramp is told from a hold.
+const PARTS: usize = 20;
+/// Place among the sorted slopes of the one that the others are measured by, above which outliers may lie.
+const STEEP: usize = 17;
+
 /// A temperature over time, linear between its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TemperatureProgramme {
@@ -77,16 +82,41 @@ impl TemperatureProgramme {
 
     /// The mean heating rate in K/s over the span of its temperatures, by least squares.
     pub fn heating_rate(&self) -> f64 {
-        let count = self.times.len() as f64;
-        let mean = |list: &[f64]| list.iter().sum::<f64>() / count;
-        let (time, temperature) = (mean(&self.times), mean(&self.temperatures));
-        let (mut above, mut below) = (0.0, 0.0);
-        for (t, value) in self.times.iter().zip(&self.temperatures) {
-            above += (t - time) * (value - temperature);
-            below += (t - time) * (t - time);
-        }
-        above / below
+        slope(&self.times, &self.temperatures)
     }
+
+    /// Heating rate in K/s of its ramp, holds left out: the median over the parts of its span that heat. `None` where it heats for less than
+    /// half of the span.
+    pub fn ramp_rate(&self) -> Option<f64> {
+        let (start, end) = (self.times[0], self.times[self.times.len() - 1]);
+        let place = |part: usize| start + (end - start) * part as f64 / PARTS as f64;
+        let of_part = |part: usize| {
+            let (from, to) = (place(part), place(part + 1));
+            let within = |time: f64| self.times.partition_point(|&one| one < time);
+            let points = within(from)..within(to);
+            match points.len() {
+                0..=2 => (self.at(to).0 - self.at(from).0) / (to - from),
+                _ => slope(&self.times[points.clone()], &self.temperatures[points]),
+            }
+        };
+        let mut slopes: Vec<f64> = (0..PARTS).map(of_part).collect();
+        slopes.sort_by(f64::total_cmp);
+        let least = 0.5 * slopes[STEEP];
+        let heating = &slopes[slopes.partition_point(|&one| one <= least.max(0.0))..];
+        (2 * heating.len() >= PARTS).then(|| heating[heating.len() / 2])
+    }
+}
+
+/// Slope of values over times by least squares.
+fn slope(times: &[f64], values: &[f64]) -> f64 {
+    let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len() as f64;
+    let (time, value) = (mean(times), mean(values));
+    let (mut above, mut below) = (0.0, 0.0);
+    for (t, one) in times.iter().zip(values) {
+        above += (t - time) * (one - value);
+        below += (t - time) * (t - time);
+    }
+    above / below
 }
 
 /// Places at which rate constants are evaluated so that ∫ k dt is known at given times whatever the constants are.
@@ -165,6 +195,29 @@ mod tests {
         assert_eq!(programme.at(10.0), (320.0, 0.0));
         assert_eq!(programme.at(30.0), (320.0, 0.0));
         assert_eq!(programme.at(-1.0), (298.0, 2.0));
+    }
+
+    /// Temperatures each 5 s with noise of 0.05 K, a hold of a tenth of the span before and after the ramp of 10 K/min.
+    #[test]
+    fn the_rate_of_a_ramp_leaves_holds_out_and_a_hold_has_none() {
+        let mut random = crate::SearchRandom::new(1);
+        let mut of = |hold: f64| {
+            let times: Vec<f64> = (0..720).map(|k| 5.0 * f64::from(k)).collect();
+            let temperature = |t: &f64| 300.0 + (t - hold).clamp(0.0, 3600.0 - 2.0 * hold) / 6.0;
+            let values = times.iter().map(temperature);
+            let values = values.map(|value| value + 0.05 * random.normal()).collect();
+            TemperatureProgramme::new(times, values).unwrap()
+        };
+        let held = of(360.0);
+        let rate = 60.0 * held.ramp_rate().unwrap();
+        assert!((rate - 10.0).abs() < 0.02, "{rate}");
+        assert!(
+            60.0 * held.heating_rate() < 9.7,
+            "a mean has the holds in it"
+        );
+        assert_eq!(of(1500.0).ramp_rate(), None);
+        let line = TemperatureProgramme::heating(300.0, 0.25, 100.0).unwrap();
+        assert!((line.ramp_rate().unwrap() / 0.25 - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -119,6 +119,8 @@ pub struct SearchedFront {
     pub evaluations: Vec<SearchEvaluation>,
     /// Point that is worse than all of the first generation that could be evaluated: hypervolumes are measured from it.
     pub reference: Vec<f64>,
+    /// How many of the evaluations were known from before.
+    pub replayed: usize,
     /// Hypervolume of the front after each generation, relative to the box between reference and zero.
     pub hypervolumes: Vec<f64>,
 }
@@ -144,6 +146,7 @@ pub fn search_front(
         archive: ParetoArchive::default(),
         evaluations: Vec::new(),
         reference: vec![f64::NEG_INFINITY; problem.objectives().len()],
+        replayed: 0,
         hypervolumes: Vec::new(),
     };
     for generation in 0..settings.generations.max(1) {
@@ -188,7 +191,9 @@ pub fn search_front(
         }
         found.hypervolumes.push(relative_volume(&found));
         search.tell(told);
-        if !replayed {
+        if replayed {
+            found.replayed += before.len();
+        } else {
             after(generation, &found.evaluations[from..]);
         }
     }

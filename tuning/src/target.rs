@@ -1,9 +1,8 @@
 //! Curves that models are compared with.
 
 use crate::TuningError;
-use crate::law::KineticLaw;
-use crate::model::{HeatingRun, PreparedSample, SampleModel, SampleResponse};
-use crate::problem::TuningProblem;
+use crate::model::{HeatingRun, PreparedSample, SampleModel, SampleReaction, SampleResponse};
+use crate::problem::{TuningProblem, sum_of_squares};
 use crate::programme::RateQuadrature;
 use crate::space::ParameterSpace;
 use calcine_physics::gas::GAS_CONSTANT;
@@ -78,6 +77,23 @@ impl TargetCurve {
     pub fn conversion(&self, loss: f64) -> Option<Vec<f64>> {
         let mass = self.of(ComparedQuantity::Mass)?;
         Some(mass.iter().map(|m| (1.0 - m) / loss).collect())
+    }
+
+    /// Share of the mass that is lost at each time: by the mass, else by the integral of the rate.
+    fn lost(&self) -> Option<Vec<f64>> {
+        if let Some(mass) = self.of(ComparedQuantity::Mass) {
+            return Some(mass.iter().map(|m| 1.0 - m).collect());
+        }
+        let rate = self.of(ComparedQuantity::LossRate)?;
+        let times = self.run.times.windows(2).map(|t| t[1] - t[0]);
+        let steps = times.zip(rate.windows(2).map(|r| 0.5 * (r[0] + r[1])));
+        let mut lost = vec![0.0];
+        let mut sum = 0.0;
+        lost.extend(steps.map(|(time, rate)| {
+            sum += time * rate;
+            sum
+        }));
+        Some(lost)
     }
 
     /// Share of the mass that is lost at the end. The noise of a few values averages out.
@@ -310,57 +326,150 @@ impl SampleProblem {
         Ok(())
     }
 
-    /// Adds guesses: places at which a law of one reaction is half done when the measured curves are, for energies all over
-    /// the bounds. `factor` and `energy` are the names of the reaction's numbers; where neither is tuned, nothing is added.
-    /// Other parameters stand in the middle.
-    pub fn guess_by(&mut self, law: &dyn KineticLaw, model: &dyn SampleModel, names: [&str; 2]) {
-        let numbers = model.parameters();
-        let Some(energy) = numbers.iter().position(|one| one.name == names[1]) else {
-            return;
+    /// Adds guesses: places at which each reaction is half done when the curves have lost the half of its share, for energies all
+    /// over the bounds and reactions in any order. Other parameters stand in the middle. A rate does not tell where to look for
+    /// the reaction, as it is zero on both sides of its peak: curves of rates alone are integrated (docs/theory.md, TUN-14).
+    pub fn guess_by(&mut self, reactions: &[SampleReaction]) {
+        let mut found: Vec<Vec<f64>> = Vec::new();
+        let middle = vec![0.5; self.space.len()];
+        let share = |one: &SampleReaction| {
+            let of = |own, value| self.value_at(&middle, one, own, value);
+            of("reactant", one.reactant) * of("mass_loss", one.mass_loss)
         };
-        let tuned = |name: &str| {
-            self.space
-                .parameters()
-                .iter()
-                .position(|one| one.name == name)
-        };
-        let (factor, tuned_energy) = (tuned(names[0]), tuned(names[1]));
-        let whole = WholeLoss::of(&self.targets).map_or(f64::NAN, |one| one.loss);
-        let halves = self.targets.iter().filter_map(|one| half_way(one, whole));
-        let halves: Vec<RateQuadrature> = halves.collect();
-        let Some(factor) = factor.filter(|_| !halves.is_empty()) else {
-            return;
-        };
-        let x = law.reduced_time(0.5);
-        let mut out = Vec::new();
-        let count = if tuned_energy.is_some() { GUESSES } else { 1 };
-        for k in 0..count {
-            let mut places = vec![0.5; self.space.len()];
-            let mut joule = numbers[energy].value;
-            if let Some(energy) = tuned_energy {
-                places[energy] = (k as f64 + 0.5) / count as f64;
-                joule = self.space.value(energy, places[energy]);
+        let all: f64 = reactions.iter().map(share).sum();
+        let lost: Vec<Option<Vec<f64>>> = self.targets.iter().map(TargetCurve::lost).collect();
+        let ends = lost.iter().flatten().filter_map(|lost| lost.last());
+        let largest = ends.copied().fold(0.0, f64::max);
+        let whole = WholeLoss::of(&self.targets).map_or(largest, |one| one.loss);
+        for order in orders(reactions.len()) {
+            let mut before = 0.0;
+            let halves: Vec<(&SampleReaction, Vec<RateQuadrature>)> = order
+                .into_iter()
+                .map(|k| {
+                    let own = share(&reactions[k]) / all;
+                    let half = (before + 0.5 * own) * whole;
+                    before += own;
+                    let curves = self.targets.iter().zip(&lost);
+                    let passed = curves.filter_map(|(one, lost)| up_to(one, lost.as_ref()?, half));
+                    (&reactions[k], passed.collect())
+                })
+                .collect();
+            for k in 0..GUESSES {
+                let places = self.guess(&halves, (f64::from(k) + 0.5) / f64::from(GUESSES));
+                found.extend(places.filter(|places| !found.contains(places)));
             }
-            let logarithms = halves.iter().map(|half| {
-                half.integrate(joule / GAS_CONSTANT, &mut out);
+        }
+        self.guesses.append(&mut found);
+    }
+
+    /// The guess with all energies at a place; none where no curve shows any of the reactions whose factor is tuned.
+    fn guess(
+        &self,
+        halves: &[(&SampleReaction, Vec<RateQuadrature>)],
+        energy: f64,
+    ) -> Option<Vec<f64>> {
+        let mut places = vec![0.5; self.space.len()];
+        let mut out = Vec::new();
+        let mut any = false;
+        for (reaction, passed) in halves {
+            if let Some(k) = self.tuned_number(reaction, "activation_energy") {
+                places[k] = energy;
+            }
+            let factor = self.tuned_number(reaction, "pre_exponential");
+            let Some(factor) = factor.filter(|_| !passed.is_empty()) else {
+                continue;
+            };
+            any = true;
+            let of = |own: &str, value| self.value_at(&places, reaction, own, value);
+            let own = reaction.law.parameters.iter().zip(&reaction.law_numbers);
+            let own: Vec<f64> = own.map(|(one, &value)| of(one.name, value)).collect();
+            let x = (reaction.law.make)(&own.into()).reduced_time(0.5);
+            let theta = of("activation_energy", reaction.activation_energy) / GAS_CONSTANT;
+            let logarithms = passed.iter().map(|one| {
+                one.integrate(theta, &mut out);
                 (x / out[0]).ln()
             });
-            let mean = logarithms.sum::<f64>() / halves.len() as f64;
+            let mean = logarithms.sum::<f64>() / passed.len() as f64;
             places[factor] = self.space.place(factor, mean.exp());
-            self.guesses.push(places);
         }
+        any.then_some(places)
+    }
+
+    /// Place of a reaction's number among those that are tuned.
+    fn tuned_number(&self, reaction: &SampleReaction, own: &str) -> Option<usize> {
+        let name = reaction.number_name(own);
+        let mut tuned = self.space.parameters().iter();
+        tuned.position(|one| one.name == name)
+    }
+
+    /// Value of a reaction's number: at its place where it is tuned, else the one it has.
+    fn value_at(&self, places: &[f64], reaction: &SampleReaction, own: &str, value: f64) -> f64 {
+        self.tuned_number(reaction, own)
+            .map_or(value, |k| self.space.value(k, places[k]))
+    }
+
+    /// The least part, among masses and rates, that a model leaves of what a sample that does not react leaves: the sum of
+    /// squares over that about a constant mass, or a rate of zero. Near one and above, the model is no better than no reaction.
+    pub fn left_of_no_reaction(&self, places: &[f64]) -> Result<f64, TuningError> {
+        let mut out = Vec::new();
+        self.differences(places, &mut out)?;
+        let parts = self.quantities.iter().zip(&out);
+        let parts = parts.filter(|(quantity, _)| **quantity != ComparedQuantity::Temperature);
+        let parts = parts.map(|(quantity, list)| {
+            let none = self.without_reaction(*quantity);
+            sum_of_squares(list) / none.max(f64::MIN_POSITIVE)
+        });
+        Ok(parts.fold(f64::INFINITY, f64::min))
+    }
+
+    /// Sum of squares about a constant mass, the nearest one of each curve, or a rate of zero.
+    fn without_reaction(&self, quantity: ComparedQuantity) -> f64 {
+        let of_curve = |target: &TargetCurve| {
+            let measured = target.of(quantity)?.iter().enumerate();
+            let counted = measured.filter(|(k, _)| target.counts(*k));
+            let pairs: Vec<(f64, f64)> = counted.map(|(_, &x)| self.pair(1.0, x, 0.0)).collect();
+            let dot: f64 = pairs.iter().map(|(model, x)| model * x).sum();
+            let size: f64 = pairs.iter().map(|(model, _)| model * model).sum();
+            let constant = match quantity {
+                ComparedQuantity::LossRate => 0.0,
+                ComparedQuantity::Temperature | ComparedQuantity::Mass => dot / size,
+            };
+            let differences = pairs
+                .iter()
+                .map(|(model, x)| (constant * model - x).powi(2));
+            Some(differences.sum::<f64>())
+        };
+        self.targets.iter().filter_map(of_curve).sum()
     }
 }
 
 /// Energies that are guessed.
-const GUESSES: usize = 16;
+const GUESSES: u32 = 16;
+/// Reactions that are guessed in any order: more have too many orders.
+const MOST_ORDERED: usize = 3;
 
-/// The programme of a curve up to the time at which it is half done.
-fn half_way(target: &TargetCurve, loss: f64) -> Option<RateQuadrature> {
-    let conversion = target.conversion(loss)?;
-    let half = conversion.iter().position(|&x| x >= 0.5)?;
-    let time = target.run.times[half];
-    Some(RateQuadrature::new(&target.run.programme, &[time]))
+/// The orders in which so many reactions are guessed to follow each other.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    if count > MOST_ORDERED {
+        return vec![(0..count).collect()];
+    }
+    let mut all = vec![Vec::new()];
+    for _ in 0..count {
+        let longer = all.iter().flat_map(|order: &Vec<usize>| {
+            let next = (0..count).filter(|k| !order.contains(k));
+            next.map(|k| order.iter().copied().chain([k]).collect())
+        });
+        all = longer.collect();
+    }
+    all
+}
+
+/// The programme of a curve up to the time at which this share of the mass is lost.
+fn up_to(target: &TargetCurve, lost: &[f64], share: f64) -> Option<RateQuadrature> {
+    let passed = lost.iter().position(|&one| one >= share)?;
+    let time = target.run.times[passed];
+    // Before the second time nothing has been integrated.
+    (passed > 0).then(|| RateQuadrature::new(&target.run.programme, &[time]))
 }
 
 impl TuningProblem for SampleProblem {

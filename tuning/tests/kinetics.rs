@@ -8,7 +8,7 @@ use calcine_tuning::analysis::{
 };
 use calcine_tuning::information::{akaike, choose};
 use calcine_tuning::interval::{BootstrapSettings, bootstrap, profile};
-use calcine_tuning::law::{CONVERSION_LAWS, conversion_law, default_law, law_defaults};
+use calcine_tuning::law::{CONVERSION_LAWS, conversion_law, law_defaults};
 use calcine_tuning::least_squares::{FitChoice, FittedPlaces, fit};
 use calcine_tuning::model::{
     HeatingRun, KineticModel, ReactionSet, SampleModel, SampleReaction, SampleResponse,
@@ -112,11 +112,11 @@ fn problem(law: &str, targets: Vec<TargetCurve>) -> SampleProblem {
         };
         tuned.push(parameter(own.name, own.dimension, low, high, false));
     }
-    let model = model(law, 1e10, 2e5);
+    let reactions = vec![reaction(law, 1e10, 2e5)];
+    let model = KineticModel::new(ReactionSet::new(reactions.clone()));
     let space = ParameterSpace::new(tuned).unwrap();
     let mut made = SampleProblem::new(&model, space, targets, DifferenceForm::Absolute).unwrap();
-    let law = default_law(law).unwrap();
-    made.guess_by(&*law, &model, ["pre_exponential", "activation_energy"]);
+    made.guess_by(&reactions);
     made
 }
 
@@ -137,6 +137,104 @@ fn best(problem: &SampleProblem) -> FittedPlaces {
 
 fn energy(problem: &SampleProblem, fitted: &FittedPlaces) -> f64 {
     problem.space().values(&fitted.places)[1]
+}
+
+/// Rates of loss alone of a law at heating rates in K/min, with noise as a share of the largest one.
+fn rates_of_loss(law: &str, factor: f64, rates: &[f64], noise: f64) -> Vec<TargetCurve> {
+    let truth = model(law, factor, ENERGY);
+    let mut random = SearchRandom::new(1);
+    let mut targets = Vec::new();
+    for &rate in rates {
+        let mut target = curve(&truth, rate, 0.0, &mut random);
+        let mut list = respond(&truth, &target.run).loss_rate;
+        let largest = list.iter().copied().fold(0.0, f64::max);
+        list.iter_mut()
+            .for_each(|one| *one += noise * largest * random.normal());
+        target.values = vec![(ComparedQuantity::LossRate, list)];
+        targets.push(target);
+    }
+    targets
+}
+
+/// A rate is zero on both sides of its peak: far from it no parameter has a slope, and a fit that starts there stays.
+#[test]
+fn rates_of_loss_alone_give_back_their_law_within_bounds_far_apart() {
+    for (law, factor) in [("F1", FACTOR), ("A2", FACTOR), ("R3", 0.4 * FACTOR)] {
+        for (rates, within) in [(&[6.0][..], 0.03), (&[5.0, 10.0, 20.0][..], 0.01)] {
+            let targets = rates_of_loss(law, factor, rates, 0.03);
+            let problem = problem(law, targets);
+            let found = best(&problem);
+            // The noise of 3 % makes the energy uncertain by 1 % of one curve, and by a third of it of three.
+            let energy = energy(&problem, &found);
+            assert!(
+                (energy / ENERGY - 1.0).abs() < within,
+                "{law} {rates:?}: {energy}"
+            );
+            let left = problem.left_of_no_reaction(&found.places).unwrap();
+            assert!(left < 0.05, "{law} {rates:?}: {left}");
+        }
+    }
+}
+
+/// Every law, be it the right one or not, finds the peak of the rates.
+#[test]
+fn no_law_settles_where_nothing_reacts() {
+    let targets = rates_of_loss("R3", 0.4 * FACTOR, &[6.0], 0.03);
+    for law in CONVERSION_LAWS {
+        let problem = problem(law.name, targets.clone());
+        let left = problem.left_of_no_reaction(&best(&problem).places).unwrap();
+        assert!(left < 0.5, "{}: {left}", law.name);
+    }
+    let problem = problem("R3", targets);
+    let idle = problem.left_of_no_reaction(&[0.0, 1.0]).unwrap();
+    assert!((idle - 1.0).abs() < 1e-9, "{idle}");
+}
+
+/// Two reactions side by side, of which the one that the file names last comes first.
+#[test]
+fn rates_of_two_reactions_give_back_both_energies() {
+    let of = |name: &str, factor, energy, loss| SampleReaction {
+        name: name.into(),
+        mass_loss: loss,
+        ..reaction("F1", factor, energy)
+    };
+    let reactions = vec![
+        of("late", FACTOR, ENERGY, 0.3),
+        of("early", 1e10, 170e3, 0.1),
+    ];
+    let truth = KineticModel::new(ReactionSet::new(reactions.clone()));
+    let mut random = SearchRandom::new(1);
+    let mut targets = Vec::new();
+    for rate in [5.0, 10.0, 20.0] {
+        let mut target = curve(&truth, rate, 0.0, &mut random);
+        let list = respond(&truth, &target.run).loss_rate;
+        target.values = vec![(ComparedQuantity::LossRate, list)];
+        targets.push(target);
+    }
+    let mut tuned = Vec::new();
+    for name in ["late", "early"] {
+        let of = |own: &str, dimension, low, high| TunedParameter {
+            name: format!("{name}.{own}"),
+            dimension,
+            low,
+            high,
+            logarithmic: own == "pre_exponential",
+        };
+        let rate = Dimension::ANGULAR_VELOCITY;
+        tuned.push(of("pre_exponential", rate, 1e2, 1e25));
+        tuned.push(of(
+            "activation_energy",
+            Dimension::MOLAR_ENERGY,
+            50e3,
+            500e3,
+        ));
+    }
+    let space = ParameterSpace::new(tuned).unwrap();
+    let mut problem = SampleProblem::new(&truth, space, targets, DifferenceForm::Absolute).unwrap();
+    problem.guess_by(&reactions);
+    let values = problem.space().values(&best(&problem).places);
+    assert!((values[1] / ENERGY - 1.0).abs() < 1e-3, "{values:?}");
+    assert!((values[3] / 170e3 - 1.0).abs() < 1e-3, "{values:?}");
 }
 
 pub const RATES: [f64; 4] = [3.0, 6.0, 9.0, 12.0];

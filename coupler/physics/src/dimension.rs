@@ -53,6 +53,7 @@ dimensions! {
     MASS_FLOW = [0, 1, -1, 0, 0], "a mass flow", "kg/s", "1 kg/h";
     HEAT_FLUX = [0, 1, -3, 0, 0], "a heat flux", "W/m^2", "1 kW/m^2";
     HEAT_TRANSFER = [0, 1, -3, -1, 0], "a heat transfer coefficient", "W/m^2/K", "10 W/m^2/K";
+    HEATING_RATE = [0, 0, -1, 1, 0], "a heating rate", "K/s", "5 K/min";
     ANGULAR_VELOCITY = [0, 0, -1, 0, 0], "an angular velocity", "rad/s", "3 rad/s";
     FORCE = [1, 1, -2, 0, 0], "a force", "N", "50 mN";
     STIFFNESS = [0, 1, -2, 0, 0], "a stiffness or an energy per area", "N/m", "1 kN/m";

@@ -68,7 +68,7 @@ const TARGETS: &[Key] = &[
     key("compare", Choices(&["temperature", "mass", "loss_rate"]), Without("the mass, or the rate of loss where there is none"), "Which columns the model is compared with; the temperature of a lumped model is that of the sample.", "[\"temperature\", \"mass\"]"),
     key("sample_mass", Number(D::MASS, Positive), Without("the mean of the first masses of the file, before it falls"), "Mass of the sample at the start, which masses in mg are relative to. Where it is not stated, the scale of the curve is fitted.", "\"5 mg\""),
     key("sample_share", Number(D::NONE, Between(0.2, 1.5)), Without("the mean of the first values of the file, before it falls"), "Value at the start, which masses in % are relative to: 100 % where the instrument took it from the mass at the start. Where it is not stated, the scale of the curve is fitted.", "\"100 %\""),
-    key("heating_rate", Number(HEATING_RATE, Positive), Without("the temperatures of the file"), "Constant heating rate of the furnace.", "\"15 K/min\""),
+    key("heating_rate", Number(D::HEATING_RATE, Positive), Without("the temperatures of the file"), "Constant heating rate of the furnace.", "\"15 K/min\""),
     key("start_temperature", Number(D::TEMPERATURE, Positive), Default("293.15 K"), "Temperature at the first time, with `heating_rate`.", "\"20 degC\""),
     key("fit", Truth, Default("true"), "Whether the parameters are fitted to it. With `false` it is kept back: the tuned model is compared with it afterwards.", "false"),
     key("conversion", Numbers(2), Without("all of the curve"), "Range of the conversion that counts.", "[0.001, 0.999]"),
@@ -97,8 +97,6 @@ const INTERVALS: &[Key] = &[
 
 /// m².
 const AREA: D = D([2, 0, 0, 0, 0]);
-/// K/s.
-const HEATING_RATE: D = D([0, 0, -1, 1, 0]);
 
 /// The keys of the file of a tuning.
 #[rustfmt::skip]

@@ -73,6 +73,7 @@ pub(in crate::case) fn tuning(
     if !complete {
         return None;
     }
+    take_middles(&mut model.reactions, &parameters);
     let tuned = parameters
         .iter()
         .any(|one| one.name.ends_with("mass_loss") || one.name.ends_with("reactant"));
@@ -180,7 +181,7 @@ fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
             false => f64::NAN,
         };
         let made = own.first().map(|first| SampleReaction {
-            name: if several { name } else { String::new() },
+            name: if several { name.clone() } else { String::new() },
             law: first.law,
             law_numbers: first.numbers.clone(),
             pre_exponential,
@@ -195,7 +196,8 @@ fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
                 "name one law for each of several reactions, and compare by files of their own";
             table.fail("laws", format!("has {} laws", own.len()), help);
         }
-        if several && !table.has("mass_loss") {
+        let tuned = names_parameter(root, &format!("{name}.mass_loss"));
+        if several && !table.has("mass_loss") && !tuned {
             table.missing("mass_loss");
         }
         lawless |= made.is_none();
@@ -263,6 +265,24 @@ fn candidates(table: &TableReader<'_>) -> Vec<LawCandidate> {
     found
 }
 
+/// True of a name below `[parameters]`.
+fn names_parameter(root: &TableReader<'_>, name: &str) -> bool {
+    let table = root.has("parameters").then(|| root.table("parameters"));
+    table
+        .flatten()
+        .is_some_and(|table| table.named().iter().any(|(one, _)| one == name))
+}
+
+/// Gives losses that are tuned and not stated the middle of their bounds.
+fn take_middles(reactions: &mut [SampleReaction], parameters: &[TunedParameter]) {
+    for one in reactions.iter_mut().filter(|one| one.mass_loss.is_nan()) {
+        let name = one.number_name("mass_loss");
+        if let Some(tuned) = parameters.iter().find(|tuned| tuned.name == name) {
+            one.mass_loss = 0.5 * (tuned.low + tuned.high);
+        }
+    }
+}
+
 /// Fills in the loss of one reaction from the targets.
 fn take_loss(root: &TableReader<'_>, spec: &mut SampleSpec, measured: Option<f64>) -> Option<()> {
     let [only] = &mut spec.reactions[..] else {
@@ -273,6 +293,9 @@ fn take_loss(root: &TableReader<'_>, spec: &mut SampleSpec, measured: Option<f64
     }
     if let Some(loss) = measured {
         only.mass_loss = loss / only.reactant;
+        return Some(());
+    }
+    if names_parameter(root, "mass_loss") {
         return Some(());
     }
     root.tables("reactions").first()?.missing("mass_loss");

@@ -6,6 +6,7 @@ use calcine_tuning::model::HeatingRun;
 use calcine_tuning::{ComparedQuantity, TargetCurve, TemperatureProgramme};
 
 use crate::case::table::TableReader;
+use crate::case::units::short3;
 use crate::case::words::{DecimalName, DelimiterName, TunedModel};
 use crate::tuning::curves::{
     CurveColumn, CurveFile, CurveFileError, CurveRules, MassAtStart, MeasuredRun, SheetForm,
@@ -15,6 +16,9 @@ use crate::tuning::warn;
 
 /// A stated heating rate may differ from that of the file's temperatures by this share: a sample lags behind its furnace.
 const OTHER_RATE: f64 = 0.1;
+/// That lag in s, and what the start of a furnace may differ by in K: half of the rows are nearer to the stated temperatures.
+const LONGEST_LAG: f64 = 120.0;
+const OTHER_START: f64 = 15.0;
 /// Below this temperature in K no furnace begins.
 const COLD: f64 = 230.0;
 /// A value that stands alone is above or below both of its neighbours, by so many times the change from most values to the next, and by this share of all
@@ -42,11 +46,29 @@ impl Targets {
     /// Reads all targets of a file; problems are recorded.
     pub fn read(root: &TableReader<'_>, folder: &Path, of: Option<TunedModel>) -> Self {
         let mut read = Self::default();
+        let mut sources: Vec<(PathBuf, CurveFile, Vec<ComparedQuantity>)> = Vec::new();
+        let mut repeated = None;
         for table in &root.tables("targets") {
             let mut target = Target::of(table, folder);
             read.files.extend(target.path.clone());
             target.lumped = of == Some(TunedModel::Lumped);
-            for (curve, start, told) in target.curves().unwrap_or_default() {
+            let curves = target.curves().unwrap_or_default();
+            if let (Some(path), Some((curve, ..))) = (&target.path, curves.first()) {
+                let quantities = curve.values.iter().map(|one| one.0);
+                let quantities: Vec<ComparedQuantity> = quantities.collect();
+                let again = sources.iter().any(|(file, form, known)| {
+                    file == path
+                        && form.columns == target.file.columns
+                        && known.iter().any(|one| quantities.contains(one))
+                });
+                if again {
+                    repeated = path
+                        .file_name()
+                        .map(|name| name.to_string_lossy().into_owned());
+                }
+                sources.push((path.clone(), target.file.clone(), quantities));
+            }
+            for (curve, start, told) in curves {
                 read.warnings.extend(told);
                 if let Some(start) = &start
                     && target.sample_mass.is_some()
@@ -87,6 +109,8 @@ impl Targets {
         });
         if let Some((one, other)) = twins {
             read.warnings.push(warn::same_curve(&one.name, &other.name));
+        } else if let Some(file) = repeated {
+            read.warnings.push(warn::same_file(&file));
         }
         read
     }
@@ -216,13 +240,31 @@ impl<'t, 'a> Target<'t, 'a> {
 
     /// Refuses a stated heating rate that the file's own temperatures contradict.
     fn agrees(&self, rate: f64, run: &MeasuredRun) -> Option<()> {
-        let (first, last) = (run.temperature.first(), run.temperature.last());
-        let (Some(first), Some(last), Some(span)) = (first, last, run.time.last()) else {
+        // What is wrong with the temperatures themselves is told where they are taken.
+        let measured = TemperatureProgramme::new(run.time.clone(), run.temperature.clone());
+        let (Ok(measured), Some(start)) = (measured, self.start_temperature) else {
             return Some(());
         };
-        let own = (last - first) / span;
+        let own = measured.ramp_rate();
+        let own = own.unwrap_or_else(|| measured.heating_rate());
         if (own / rate - 1.0).abs() <= OTHER_RATE {
-            return Some(());
+            let rows = run.time.iter().zip(&run.temperature);
+            let mut above: Vec<f64> = rows.map(|(time, own)| start + rate * time - own).collect();
+            above.sort_by(f64::total_cmp);
+            let middle = above[above.len() / 2];
+            if middle.abs() <= OTHER_START.max(LONGEST_LAG * rate) {
+                return Some(());
+            }
+            let rule = format!(
+                "is {:.4} K/min from {:.1} °C on, {:.0} K {} the temperatures of the file",
+                60.0 * rate,
+                start - 273.15,
+                middle.abs(),
+                if middle > 0.0 { "above" } else { "below" }
+            );
+            let help = "cut the rows before the ramp, state `start_temperature`, or remove `heating_rate`: the temperatures of the file are taken then";
+            self.table.fail("heating_rate", rule, help);
+            return None;
         }
         let rule = format!(
             "is {:.4} K/min, but the temperatures of the file rise by {:.4} K/min",
@@ -232,6 +274,16 @@ impl<'t, 'a> Target<'t, 'a> {
         let help = "remove it, and the temperatures of the file are taken, or correct it";
         self.table.fail("heating_rate", rule, help);
         None
+    }
+
+    /// Name of a curve that has none: the rate of its ramp, or its file, with the run of it.
+    fn rate_or_file(&self, programme: &TemperatureProgramme, label: &str) -> String {
+        if let Some(rate) = programme.ramp_rate() {
+            return format!("{} K/min", short3(60.0 * rate));
+        }
+        let stem = self.path.as_ref().and_then(|path| path.file_stem());
+        let stem = stem.unwrap_or_default().to_string_lossy();
+        format!("{stem} {label}").trim_end().to_owned()
     }
 
     fn curve(&self, run: MeasuredRun, several: bool) -> Option<TargetCurve> {
@@ -301,13 +353,16 @@ impl<'t, 'a> Target<'t, 'a> {
                 .fail("compare", "is empty", "name mass, loss_rate or temperature");
             return None;
         }
-        let rate = programme.heating_rate() * 60.0;
         let start_values = run.start.as_ref().and_then(|one| one.rows);
         let curve = TargetCurve {
             name: match &self.name {
                 Some(name) if several => format!("{name} {}", run.label),
                 Some(name) => name.clone(),
-                None => format!("{:.3} K/min", rate).replace(".000", ""),
+                // A run that the file names.
+                None if !run.label.is_empty() && run.label.parse::<f64>().is_err() => {
+                    run.label.clone()
+                }
+                None => self.rate_or_file(&programme, &run.label),
             },
             run: HeatingRun {
                 programme,

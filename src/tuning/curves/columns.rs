@@ -29,7 +29,7 @@ pub(super) struct FoundColumn {
 }
 
 /// A heading as its name and its unit: `Temp./°C`, `Mass (mg)`, `Time [min]`, `mass_mg`.
-fn parted(heading: &str) -> (String, Option<String>) {
+pub(super) fn parted(heading: &str) -> (String, Option<String>) {
     let text = heading.trim();
     for (open, close) in [('(', ')'), ('[', ']')] {
         if let Some((name, rest)) = text.rsplit_once(open)
@@ -63,6 +63,26 @@ fn named(sheet: &Sheet, wanted: &str) -> Option<usize> {
         .or(by_number.map(|k| k - 1))
 }
 
+/// Unit of a column: that of its heading, else that below it.
+fn unit_of(sheet: &Sheet, place: usize) -> Option<String> {
+    let below = || sheet.units.get(place).map(|unit| bare(unit).to_owned());
+    let unit = parted(&sheet.headings[place]).1.or_else(below);
+    unit.filter(|unit| !unit.is_empty())
+}
+
+/// True of a heading of Mettler's tables that means a column by itself alone: `t`, and `Value` by its unit.
+fn is_plain(sheet: &Sheet, place: usize, column: CurveColumn) -> bool {
+    let name = parted(&sheet.headings[place]).0;
+    match column {
+        CurveColumn::Time => name == "t",
+        CurveColumn::Mass | CurveColumn::LossRate => {
+            let unit = unit_of(sheet, place).unwrap_or_default();
+            name == "Value" && column.units().iter().any(|(known, ..)| *known == unit)
+        }
+        CurveColumn::Temperature | CurveColumn::Run => false,
+    }
+}
+
 /// Finds a column: as the case says, or by its heading. `None` where neither does.
 pub(super) fn find(
     path: &Path,
@@ -93,16 +113,21 @@ pub(super) fn find(
             }
         },
         None => {
-            let means = |name: &String| {
-                let small = name.trim().trim_start_matches('#').to_lowercase();
-                column
-                    .beginnings()
-                    .iter()
-                    .any(|begin| small.starts_with(begin))
-                    && !(column == CurveColumn::Mass && small.starts_with("mass loss rate"))
+            let small = |k: usize| {
+                let name = sheet.headings[k].trim().trim_start_matches('#');
+                name.to_lowercase()
             };
-            let found = (0..sheet.headings.len()).filter(|&k| means(&sheet.headings[k]));
-            let found: Vec<usize> = found.collect();
+            let means = |k: &usize| {
+                let begins = column.beginnings().iter();
+                let begins = begins.clone().any(|begin| small(*k).starts_with(begin));
+                let rate = column == CurveColumn::Mass && small(*k).starts_with("mass loss rate");
+                begins && !rate || is_plain(sheet, *k, column)
+            };
+            let mut found: Vec<usize> = (0..sheet.headings.len()).filter(means).collect();
+            // The reference's temperature beside the sample's.
+            if column == CurveColumn::Temperature && found.len() > 1 {
+                found.retain(|&k| !small(k).starts_with("tr"));
+            }
             match found[..] {
                 [] => return Ok(None),
                 [place] => place,
@@ -118,9 +143,6 @@ pub(super) fn find(
             }
         }
     };
-    let own = parted(&sheet.headings[place]).1;
-    let below = sheet.units.get(place).map(|unit| bare(unit).to_owned());
-    let below = below.filter(|unit| !unit.is_empty());
     // What tells runs apart is a label, whatever its unit.
     if column == CurveColumn::Run {
         return Ok(Some(FoundColumn {
@@ -130,7 +152,7 @@ pub(super) fn find(
             offset: 0.0,
         }));
     }
-    let Some(unit) = choice.unit.clone().or(own).or(below) else {
+    let Some(unit) = choice.unit.clone().or_else(|| unit_of(sheet, place)) else {
         let fact = format!("the column \"{}\" has no unit", sheet.headings[place]);
         let units = column
             .units()
@@ -198,6 +220,8 @@ mod tests {
                 rows: Vec::new(),
                 lines: Vec::new(),
                 heading_line: Some(1),
+                labels: None,
+                unknown: None,
             };
             let found = find(Path::new("a.csv"), &sheet, column, &ColumnChoice::default());
             let found = found.unwrap().unwrap();

@@ -6,7 +6,8 @@ use super::CurveFileError;
 use super::columns::{ColumnChoice, FoundColumn, find};
 use super::curve_column::CurveColumn;
 use super::sheet::{Sheet, SheetForm, decode, sheet};
-use super::start::{MassAtStart, plateau};
+use super::start::{MassAtStart, noise, plateau};
+use crate::report::number::figure;
 
 /// How a file of curves is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,6 +49,11 @@ impl Default for CurveRules {
 pub(crate) const LARGEST_RISE: f64 = 0.05;
 /// Rows of a run at least.
 const LEAST_ROWS: usize = 10;
+/// Share of the mass at the start that a file begins with at least, where that mass is stated.
+const LEAST_START: f64 = 0.05;
+/// A loss above the whole mass that is let pass, as the drift of a balance: this share, or so many standard deviations of the noise.
+const LARGEST_EXCESS: f64 = 0.05;
+const NOISE: f64 = 5.0;
 /// Least fall of the mass that counts as one.
 const LEAST_FALL: f64 = 1e-3;
 
@@ -88,7 +94,10 @@ pub fn parse_curves(
     file: &CurveFile,
 ) -> Result<Vec<MeasuredRun>, CurveFileError> {
     let text = decode(path, bytes)?;
-    let sheet = sheet(path, &text, file.form)?;
+    let runs = CurveColumn::ALL.iter().zip(&file.columns);
+    let mut runs = runs.filter(|(column, _)| **column == CurveColumn::Run);
+    let runs = runs.find_map(|(_, choice)| choice.heading.as_deref());
+    let sheet = sheet(path, &text, file.form, runs)?;
     let mut found: [Option<FoundColumn>; 5] = Default::default();
     for ((column, choice), place) in CurveColumn::ALL.iter().zip(&file.columns).zip(&mut found) {
         *place = find(path, &sheet, *column, choice)?;
@@ -123,17 +132,28 @@ fn no_column(path: &Path, sheet: &Sheet, column: CurveColumn) -> CurveFileError 
         .iter()
         .map(|name| format!("\"{name}\""))
         .collect();
-    let fact = format!(
-        "no column was recognised as the {key} among {}",
-        names.join(", ")
-    );
+    let (line, of) = match &sheet.unknown {
+        Some((line, text)) => (
+            Some(*line),
+            format!(
+                "the {} columns, whose headings were not recognised: the line above them is \"{text}\"",
+                names.len()
+            ),
+        ),
+        None if sheet.heading_line.is_none() => (
+            None,
+            format!("the {} columns, which have no headings", names.len()),
+        ),
+        None => (sheet.heading_line, names.join(", ")),
+    };
+    let fact = format!("no column was recognised as the {key} among {of}");
     let rate = match column {
         CurveColumn::Temperature => ", or state `heating_rate`",
         _ => "",
     };
     let help =
         format!("name it as `columns.{key}` of the target, by its heading or its number{rate}");
-    CurveFileError::new(path, sheet.heading_line, fact, help)
+    CurveFileError::new(path, line, fact, help)
 }
 
 /// Rows by the value of the column of runs, in the order of the file.
@@ -143,7 +163,10 @@ fn groups(sheet: &Sheet, run: Option<&FoundColumn>) -> Vec<(String, Vec<usize>)>
     };
     let mut all: Vec<(String, Vec<usize>)> = Vec::new();
     for (k, row) in sheet.rows.iter().enumerate() {
-        let label = row[run.place].to_string();
+        let label = match &sheet.labels {
+            Some((place, labels)) if *place == run.place => labels[k].clone(),
+            _ => row[run.place].to_string(),
+        };
         match all.iter_mut().find(|(known, _)| *known == label) {
             Some((_, rows)) => rows.push(k),
             None => all.push((label, vec![k])),
@@ -279,7 +302,7 @@ impl Columns {
                 return wrong(
                     0,
                     fact,
-                    "export the mass relative to that at the start, or state the unit as `units.mass`",
+                    "export the mass of the sample, not its change, relative to that at the start, or state the unit as `units.mass`",
                 );
             }
             if weighed && initial.is_none() {
@@ -295,6 +318,29 @@ impl Columns {
                 rows: stated.is_none().then_some(rows),
             });
             mass.iter_mut().for_each(|m| *m /= start);
+            let change = "export the mass of the sample, not its change";
+            if mass[0] < LEAST_START {
+                let fact = format!(
+                    "the mass is {} {} at the start, of the {} {} that masses are relative to",
+                    written(0, found),
+                    found.unit,
+                    figure(start / found.factor, 4),
+                    found.unit
+                );
+                return wrong(0, fact, change);
+            }
+            // A sample may lose all of its mass, and a balance may drift below zero then.
+            let least = -LARGEST_EXCESS.max(NOISE * noise(&mass));
+            if let Some(k) = mass.iter().position(|&m| m < least) {
+                let fact = format!(
+                    "the mass is {} {}: the sample loses more than its mass at the start, {} {}",
+                    written(k, found),
+                    found.unit,
+                    figure(start / found.factor, 4),
+                    found.unit
+                );
+                return wrong(k, fact, change);
+            }
             if let Err((k, fact, help)) = falls(&mass, rules.largest_rise) {
                 return wrong(k, fact, &help);
             }

@@ -71,10 +71,20 @@ pub(super) struct Sheet {
     pub lines: Vec<usize>,
     /// Line of the headings.
     pub heading_line: Option<usize>,
+    /// The column that may hold texts, and its field of each row: a number as any other column writes it where all are numbers.
+    pub labels: Option<(usize, Vec<String>)>,
+    /// The last line above the rows, and its number, where it was not understood as headings.
+    pub unknown: Option<(usize, String)>,
 }
 
 /// Rows that must be found before columns are believed in.
 const LEAST_ROWS: usize = 5;
+/// Columns that are looked at for texts where no table of numbers is found.
+const MOST_COLUMNS: usize = 40;
+/// Lines in which the heading of the column of runs is looked for.
+const HEADING_LINES: usize = 300;
+/// Letters of unknown headings that a message shows.
+const LONGEST_HEADINGS: usize = 160;
 /// Longest file in bytes.
 const LONGEST: usize = 200_000_000;
 
@@ -96,9 +106,21 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<String, CurveFileError
         });
         String::from_utf16_lossy(&pairs.collect::<Vec<u16>>())
     };
+    // Letters of instruments' files are in the lower half of UTF-16, with or without its mark.
+    let halves = |from: usize| {
+        bytes.len() >= 8
+            && bytes
+                .iter()
+                .skip(from)
+                .step_by(2)
+                .take(4)
+                .all(|one| *one == 0)
+    };
     let text = match bytes {
         [0xff, 0xfe, rest @ ..] => wide(true, rest),
         [0xfe, 0xff, rest @ ..] => wide(false, rest),
+        _ if halves(1) => wide(true, bytes),
+        _ if halves(0) => wide(false, bytes),
         [0xef, 0xbb, 0xbf, rest @ ..] => latin_or_utf8(rest),
         _ => latin_or_utf8(bytes),
     };
@@ -139,12 +161,17 @@ fn number(field: &str, decimal_comma: bool) -> Option<f64> {
 struct Manner {
     delimiter: Delimiter,
     decimal_comma: bool,
+    /// The column that may hold texts, which count as not a number.
+    label: Option<usize>,
 }
 
 impl Manner {
     fn row(self, line: &str) -> Option<Vec<f64>> {
         let fields = self.delimiter.split(line);
-        let numbers = fields.iter().map(|field| number(field, self.decimal_comma));
+        let numbers = fields.iter().enumerate().map(|(k, field)| {
+            let text = (self.label == Some(k)).then_some(f64::NAN);
+            number(field, self.decimal_comma).or(text)
+        });
         let numbers: Option<Vec<f64>> = numbers.collect();
         numbers.filter(|row| row.len() >= 2)
     }
@@ -180,8 +207,14 @@ impl Manner {
     }
 }
 
-/// Finds the columns in a text.
-pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, CurveFileError> {
+/// Finds the columns in a text. `runs` is the heading or the number of the column that tells runs apart, where it is stated: it
+/// may hold texts.
+pub(super) fn sheet(
+    path: &Path,
+    text: &str,
+    form: SheetForm,
+    runs: Option<&str>,
+) -> Result<Sheet, CurveFileError> {
     let lines: Vec<(usize, &str)> = text
         .lines()
         .enumerate()
@@ -192,22 +225,29 @@ pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, C
         let help = "export the curve again, with time, temperature and mass";
         return Err(CurveFileError::new(path, None, "it is empty", help));
     }
-    let manner = manner(path, &lines, form)?;
+    let manner = manner(path, &lines, form, runs)?;
     let (longest, _, width) = manner.stretch(&lines);
     let start = manner.first_row(&lines, width).unwrap_or(longest);
     let above = &lines[..start];
     let (headings, heading_line, units) = headings(above, manner.delimiter, width);
-    let (mut rows, mut numbers) = (Vec::new(), Vec::new());
-    for &(line, text) in &lines[start..] {
+    let (mut rows, mut numbers, mut labels) = (Vec::new(), Vec::new(), Vec::new());
+    for (place, &(line, text)) in lines.iter().enumerate().skip(start) {
         let row = manner.row(text).filter(|row| row.len() == width);
+        let fields = manner.delimiter.split(text);
         let Some(row) = row else {
-            let fields = manner.delimiter.split(text);
-            let wrong = fields
-                .iter()
-                .find(|one| number(one, manner.decimal_comma).is_none());
+            if closes(manner, &lines[place..]) {
+                break;
+            }
+            let wrong = fields.iter().enumerate().find(|(k, one)| {
+                manner.label != Some(*k) && number(one, manner.decimal_comma).is_none()
+            });
             let (fact, help) = match wrong {
-                Some(wrong) if fields.len() == width => (
-                    format!("\"{}\" is not a number", short(wrong)),
+                Some((k, wrong)) if fields.len() == width => (
+                    format!(
+                        "\"{}\" is not a number in {}",
+                        short(wrong),
+                        column_name(k, &headings)
+                    ),
                     "correct or remove the line; lines of text belong above the columns",
                 ),
                 _ => (
@@ -222,14 +262,78 @@ pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, C
         };
         rows.push(row);
         numbers.push(line);
+        labels.extend(
+            manner
+                .label
+                .and_then(|k| fields.get(k))
+                .map(|one| (*one).to_owned()),
+        );
     }
+    let plain: Option<Vec<String>> = labels
+        .iter()
+        .map(|one| Some(number(one, manner.decimal_comma)?.to_string()))
+        .collect();
+    let unknown = headings.iter().all(String::is_empty).then(|| above.last());
     Ok(Sheet {
         headings,
         units,
         rows,
         lines: numbers,
         heading_line,
+        labels: manner.label.map(|k| (k, plain.unwrap_or(labels))),
+        unknown: unknown.flatten().map(|(line, text)| {
+            let shown = text.trim().chars().take(LONGEST_HEADINGS);
+            (*line, shown.collect())
+        }),
     })
+}
+
+/// A column for messages, by its number and its heading.
+fn column_name(place: usize, headings: &[String]) -> String {
+    match headings.get(place).filter(|name| !name.is_empty()) {
+        Some(name) => format!("column {}, \"{name}\"", place + 1),
+        None => format!("column {}", place + 1),
+    }
+}
+
+/// True of lines that follow the table of an instrument, such as its results: a line without any number, and no row after it.
+fn closes(manner: Manner, lines: &[(usize, &str)]) -> bool {
+    let is_number = |field: &&str| number(field, manner.decimal_comma).is_some();
+    let mut lines = lines.iter().map(|(_, line)| *line);
+    let first = lines.next().unwrap_or_default();
+    let worded = !manner.delimiter.split(first).iter().any(is_number);
+    worded && lines.all(|line| manner.row(line).is_none())
+}
+
+/// Place of the column that tells runs apart among the fields of its heading's line, or by its number.
+fn place_of_runs(
+    lines: &[(usize, &str)],
+    delimiter: Delimiter,
+    stated: Option<&str>,
+) -> Option<usize> {
+    let means = |field: &str| match stated {
+        Some(wanted) => {
+            field.trim() == wanted.trim() || super::columns::parted(field).0 == wanted.trim()
+        }
+        None => field.trim().eq_ignore_ascii_case("run"),
+    };
+    let is_number = |field: &&str| {
+        [false, true]
+            .iter()
+            .any(|&comma| number(field, comma).is_some())
+    };
+    let of_line = |(_, line): &(usize, &str)| {
+        let fields = delimiter.split(line.trim_start_matches('#').trim());
+        // Rows hold numbers, headings do not.
+        let headings = fields.len() > 1 && !fields.iter().any(is_number);
+        headings.then(|| fields.iter().position(|one| means(one)))?
+    };
+    let stated = stated.and_then(|wanted| wanted.trim().parse::<usize>().ok()?.checked_sub(1));
+    lines
+        .iter()
+        .take(HEADING_LINES)
+        .find_map(of_line)
+        .or(stated)
 }
 
 /// The beginning of a field, for messages.
@@ -238,13 +342,20 @@ fn short(field: &str) -> String {
 }
 
 /// How the lines are to be read: the manner with the longest stretch of rows; refused where two are as good and differ.
-fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manner, CurveFileError> {
+fn manner(
+    path: &Path,
+    lines: &[(usize, &str)],
+    form: SheetForm,
+    runs: Option<&str>,
+) -> Result<Manner, CurveFileError> {
     let delimiters = Delimiter::ALL.into_iter();
     let delimiters = delimiters.filter(|one| form.delimiter.is_none_or(|stated| stated == *one));
     let manners = delimiters.flat_map(|delimiter| {
+        let label = place_of_runs(lines, delimiter, runs);
         [false, true].map(|decimal_comma| Manner {
             delimiter,
             decimal_comma,
+            label,
         })
     });
     let stated = |one: &Manner| {
@@ -252,9 +363,10 @@ fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manne
             .is_none_or(|comma| comma == one.decimal_comma)
     };
     let sound = |one: &Manner| !(one.decimal_comma && one.delimiter == Delimiter::Comma);
+    let manners: Vec<Manner> = manners.filter(|one| stated(one) && sound(one)).collect();
     let mut found: Vec<(usize, usize, Manner)> = manners
-        .filter(|one| stated(one) && sound(one))
-        .map(|manner| {
+        .iter()
+        .map(|&manner| {
             let (_, count, width) = manner.stretch(lines);
             (count, width, manner)
         })
@@ -262,6 +374,9 @@ fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manne
         .collect();
     found.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
     let Some(&(count, width, manner)) = found.first() else {
+        if let Some(error) = column_of_texts(path, lines, &manners) {
+            return Err(error);
+        }
         let (line, text) = lines[lines.len() / 2];
         let fact = format!(
             "no table of numbers was found; this line is \"{}\"",
@@ -298,6 +413,36 @@ fn manner(path: &Path, lines: &[(usize, &str)], form: SheetForm) -> Result<Manne
     Ok(manner)
 }
 
+/// What is wrong with a table of which one column holds texts.
+fn column_of_texts(
+    path: &Path,
+    lines: &[(usize, &str)],
+    manners: &[Manner],
+) -> Option<CurveFileError> {
+    let places = (0..MOST_COLUMNS).map(Some);
+    let all = places.flat_map(|label| manners.iter().map(move |&one| Manner { label, ..one }));
+    // Two columns of numbers at least stand beside the texts.
+    let found = all.filter_map(|manner| {
+        let (start, count, width) = manner.stretch(lines);
+        (count >= LEAST_ROWS && width > 2).then_some((count, start, width, manner))
+    });
+    let (_, start, width, manner) = found.max_by_key(|one| one.0)?;
+    let (names, ..) = headings(&lines[..start], manner.delimiter, width);
+    let (line, text) = lines[start];
+    let place = manner.label?;
+    let field = manner
+        .delimiter
+        .split(text)
+        .get(place)
+        .map(|one| short(one))?;
+    let fact = format!(
+        "\"{field}\" is not a number in {}",
+        column_name(place, &names)
+    );
+    let help = "name the column as `columns.run` where it tells runs apart, else leave it out";
+    Some(CurveFileError::new(path, Some(line), fact, help))
+}
+
 /// Refuses commas that are both decimal sign and delimiter: twice as many fields as headings.
 fn doubled_commas(
     path: &Path,
@@ -330,6 +475,9 @@ fn headings(
     width: usize,
 ) -> (Vec<String>, Option<usize>, Vec<String>) {
     let none = vec![String::new(); width];
+    if let Some((names, line)) = signals(above, width) {
+        return (names, Some(line), none);
+    }
     let fields = |line: &str| -> Option<Vec<String>> {
         let line = line.trim_start_matches('#').trim();
         // Headings may hold spaces: where spaces part columns, those between them are wider or tabulators.
@@ -352,18 +500,43 @@ fn headings(
     let Some((line, last)) = above.last() else {
         return (none.clone(), None, none);
     };
+    let before = above.len().checked_sub(2).map(|place| above[place]);
     let Some(last) = fields(last) else {
-        return (none.clone(), None, none);
+        // Fewer units than headings: the first columns, such as an index, have none.
+        let units = delimiter.split(last.trim());
+        let few = units.len() < width && units.iter().all(|one| super::curve_column::is_unit(one));
+        let names = before.filter(|_| few);
+        let names = names.and_then(|(line, text)| Some((line, fields(text)?)));
+        let Some((line, names)) = names else {
+            return (none.clone(), None, none);
+        };
+        let mut below = vec![String::new(); width - units.len()];
+        below.extend(units.iter().map(|one| (*one).to_owned()));
+        return (names, Some(line), below);
     };
     // A line of units below the headings: all of them short, and the line above has as many fields.
     let is_units = last
         .iter()
         .all(|one| one.is_empty() || super::curve_column::is_unit(one));
-    let before = above.len().checked_sub(2).map(|place| above[place]);
     match before.and_then(|(line, text)| Some((line, fields(text)?))) {
         Some((line, names)) if is_units => (names, Some(line), last),
         _ => (last, Some(*line), none),
     }
+}
+
+/// Headings of TA Instruments: a line `Sig1 Time (min)` for each column, and the line of the first.
+fn signals(above: &[(usize, &str)], width: usize) -> Option<(Vec<String>, usize)> {
+    let of = |k: usize| {
+        above.iter().find_map(|(line, text)| {
+            let name = text.trim().strip_prefix(&format!("Sig{k}"))?;
+            let name = name.strip_prefix(|c: char| !c.is_alphanumeric())?;
+            Some((*line, name.trim().to_owned()))
+        })
+    };
+    let all: Option<Vec<(usize, String)>> = (1..=width).map(of).collect();
+    let all = all?;
+    let line = all.first()?.0;
+    Some((all.into_iter().map(|one| one.1).collect(), line))
 }
 
 #[cfg(test)]
@@ -371,7 +544,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Sheet, CurveFileError> {
-        sheet(Path::new("a.csv"), text, SheetForm::default())
+        sheet(Path::new("a.csv"), text, SheetForm::default(), None)
     }
 
     /// Six rows of these fields.
@@ -460,7 +633,8 @@ mod tests {
             [0.5, 99.5]
         );
         let (line, told) = fact(&(table("t;m", "1;2") + "3;x\n"));
-        assert_eq!((line, &told[..]), (Some(8), "\"x\" is not a number"));
+        let expected = "\"x\" is not a number in column 2, \"m\"";
+        assert_eq!((line, &told[..]), (Some(8), expected));
         let (line, told) = fact(&(table("t;m", "1;2") + "3;4;5\n"));
         assert!(
             line == Some(8) && told.contains("3 fields where 2 columns"),
@@ -474,6 +648,8 @@ mod tests {
         let of = |bytes: &[u8]| decode(Path::new("a"), bytes);
         assert_eq!(of(b"T/\xb0C").unwrap(), "T/°C");
         assert_eq!(of(b"\xff\xfea\0;\0").unwrap(), "a;");
+        assert_eq!(of(b"S\0i\0g\x001\0").unwrap(), "Sig1");
+        assert_eq!(of(b"\0S\0i\0g\x001").unwrap(), "Sig1");
         assert_eq!(of("\u{feff}a".as_bytes()).unwrap(), "a");
         assert!(of(b"PK\x03\x04").is_err() && of(b"a\0b").is_err());
     }

@@ -43,7 +43,7 @@ pub(super) fn plateau(mass: &[f64]) -> usize {
 
 /// Standard deviation of the noise of a curve: of its second differences, by their median, which a curve that bends in a few
 /// rows alone does not move.
-fn noise(mass: &[f64]) -> f64 {
+pub(super) fn noise(mass: &[f64]) -> f64 {
     let bends = mass.windows(3).map(|m| (m[0] - 2.0 * m[1] + m[2]).abs());
     let mut bends: Vec<f64> = bends.collect();
     bends.sort_by(f64::total_cmp);

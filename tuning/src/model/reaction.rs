@@ -59,6 +59,16 @@ pub struct SampleReaction {
     pub enthalpy: f64,
 }
 
+impl SampleReaction {
+    /// Name of one of its numbers among those of the model: of several reactions each is preceded by that of the reaction and a dot.
+    pub fn number_name(&self, own: &str) -> String {
+        match self.name.is_empty() {
+            true => own.to_owned(),
+            false => format!("{}.{own}", self.name),
+        }
+    }
+}
+
 /// Numbers of a reaction that come before those of its law.
 const OWN: usize = 5;
 
@@ -101,12 +111,9 @@ impl ReactionSet {
     pub fn parameters(&self) -> Vec<ModelParameter> {
         let mut all = Vec::new();
         for reaction in &self.reactions {
-            let name = |own: &str| match reaction.name.is_empty() {
-                true => own.to_owned(),
-                false => format!("{}.{own}", reaction.name),
+            let plain = |own: &str, dimension, value| {
+                ModelParameter::new(reaction.number_name(own), dimension, value)
             };
-            let plain =
-                |own: &str, dimension, value| ModelParameter::new(name(own), dimension, value);
             all.push(
                 plain(
                     "pre_exponential",
