@@ -191,6 +191,17 @@ fn bad_tuning_files_are_refused_at_their_line() {
             "low = \"0 1/s\"",
             &["logarithmic scale", "linear"],
         ),
+        ("laws = [\"F1\"]", "laws = []", &["laws", "names no law"]),
+        (
+            "low = \"1e2 1/s\"",
+            "low = \"-5 1/s\"\nscale = \"linear\"",
+            &["is -5 ", "zero or above"],
+        ),
+        (
+            "[[targets]]",
+            "[parameters.mass_loss]\nlow = 0.1\nhigh = 2\n[[targets]]",
+            &["high", "share of a mass"],
+        ),
         ("low = \"50 kJ/mol\"", "low = 50", &["needs a unit"]),
         (
             "low = \"50 kJ/mol\"",
@@ -492,6 +503,7 @@ fn holds_that_end_early_agree_with_the_law_behind_them() {
     let (code, told) = tune(&[path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code, 0, "{told}");
     assert!(!told.contains("differs from that without a law"), "{told}");
+    assert!(!told.contains("one heating rate"), "{told}");
     let found = summary(&out);
     let energy = &found["tuning"]["parameters"]["activation_energy"]["value"];
     assert!(

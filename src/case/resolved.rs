@@ -180,7 +180,8 @@ fn unresolved_layers(case: &Case) -> Vec<String> {
             // The layer of a solid that is used up in place moves on as a front.
             let lasts = shrinks || one.solids.iter().all(|solid| solid.1 >= 0.0);
             let found = thiele(case, population, (one, gas), diameter);
-            let Some((number, kelvin)) = found.filter(|one| one.0 > 0.0 && uses_gas && lasts) else {
+            let Some((number, kelvin)) = found.filter(|one| one.0 > 0.0 && uses_gas && lasts)
+            else {
                 continue;
             };
             let share = grid.share_of_layer(number);

@@ -10,6 +10,8 @@ use crate::case::units::short3;
 
 /// Heating rates that differ by less than this share are one.
 const SAME_RATE: f64 = 0.1;
+/// Difference of temperature in K up to which holds count as one.
+const SAME_HOLD: f64 = 5.0;
 /// Energies that differ by more than this share are told, and by less where only one law was fitted.
 const OTHER_ENERGY: f64 = 0.1;
 const OF_ONE_LAW: f64 = 0.05;
@@ -177,6 +179,18 @@ pub(super) fn one_rate(
             (low.min(rate), high.max(rate))
         });
     if high > low * (1.0 + SAME_RATE) {
+        return None;
+    }
+    // Holds at several temperatures tell the energy as several heating rates do.
+    let held = case.targets.iter().filter_map(|one| {
+        let programme = &one.run.programme;
+        let hold = programme.ramp_rate().is_none();
+        hold.then(|| programme.points().1.last().copied()).flatten()
+    });
+    let (coldest, hottest) = held.fold((f64::INFINITY, 0.0f64), |(low, high), kelvin| {
+        (low.min(kelvin), high.max(kelvin))
+    });
+    if hottest - coldest > SAME_HOLD {
         return None;
     }
     let law = laws.get(chosen).map_or("", |one| one.law);

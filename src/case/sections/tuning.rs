@@ -226,6 +226,10 @@ fn candidates(table: &TableReader<'_>) -> Vec<LawCandidate> {
         true => table.texts("laws").unwrap_or_default(),
         false => vec!["F1".to_owned()],
     };
+    if names.is_empty() && table.has("laws") {
+        let help = "name some, such as [\"F1\", \"R3\"] or [\"all\"], or leave it out: it is [\"F1\"] then";
+        table.fail("laws", "names no law", help);
+    }
     let stated = |name: &str| table.number(name);
     let mut found: Vec<LawCandidate> = Vec::new();
     for name in names {
@@ -366,6 +370,22 @@ fn parameters(
             let rule = format!("is {} {}, not below `high`", shown(low), dimension.unit());
             let help = "the lower bound comes first: exchange them";
             one.fail("low", rule.replace(" ,", ","), help);
+            continue;
+        }
+        // What a model takes by its logarithm is above zero by its nature.
+        if own.logarithmic && !logarithmic && low < 0.0 {
+            let help = "raise it: this number is zero or above";
+            one.fail(
+                "low",
+                format!("is {} {}", shown(low), dimension.unit()),
+                help,
+            );
+            continue;
+        }
+        if name.rsplit('.').next() == Some("mass_loss") && !(low >= 0.0 && high <= 1.0) {
+            let end = if low < 0.0 { "low" } else { "high" };
+            let help = "a sample loses between 0 and 1 of its mass";
+            one.fail(end, "is no share of a mass", help);
             continue;
         }
         if logarithmic && low <= 0.0 {
