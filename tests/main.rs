@@ -82,6 +82,7 @@ mod time_splitting;
 mod told;
 mod tracer;
 mod tuning;
+mod tuning_curves;
 mod vacuum;
 mod verification_beds;
 mod warned_and_refused;

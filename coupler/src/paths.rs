@@ -119,20 +119,15 @@ impl Paths {
             .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9))
     }
 
-    /// Mean temperatures of the reservoirs in K over a span in s up to a process time in s, with bodies of these temperatures in K; and the
-    /// body that each is of.
-    pub fn reservoirs(
-        &mut self,
-        [span, end]: [f64; 2],
-        bodies: &[f64],
-    ) -> (&[f64], &[Option<usize>]) {
+    /// Temperatures of the reservoirs in K at a process time in s, with bodies of these temperatures in K; and the body that each is of.
+    pub fn reservoirs(&mut self, time: f64, bodies: &[f64]) -> (&[f64], &[Option<usize>]) {
         let walls = self.setup.walls.iter();
         let schedules = walls.filter_map(|wall| wall.temperature.as_ref());
         self.kelvin.clear();
         self.kelvin.extend(
             schedules
                 .chain(&self.setup.surroundings)
-                .map(|one| one.mean(end - span, end)),
+                .map(|one| one.at(time)),
         );
         for (kelvin, body) in self.kelvin.iter_mut().zip(&self.bodies) {
             if let Some(own) = body.and_then(|body| bodies.get(body)) {

@@ -190,7 +190,7 @@ impl InteriorStage {
                 .extend(heat.map(|heat| NetworkHeat::constant(*heat)));
             return Ok(());
         };
-        let (reservoirs, of) = self.paths.reservoirs([span, end], bodies.told());
+        let (reservoirs, of) = self.paths.reservoirs(end, bodies.told());
         let surroundings = NetworkSurroundings {
             gas_conductivity,
             reservoirs,

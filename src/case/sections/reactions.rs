@@ -88,6 +88,9 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
     let law = table.law_here(&table.laws().rate);
     let equation = text.and_then(|text| equation(table, text, known));
     let rate = law.and_then(|law| rate(table, *law.make(), known, equation.as_ref()));
+    let equation = equation.filter(|(_, parts)| {
+        !parts.solids.is_empty() || rate.as_ref().is_some_and(|rate| is_catalysed(table, rate))
+    });
     // Known, even where the equation could not be read.
     table.has("equilibrium");
     let equilibrium = equation
@@ -114,12 +117,6 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
             return None;
         }
     }
-    if made.solids.is_empty() && !has_catalyst(&made.rate) {
-        let help = "reactions among gases alone go into [gas.chemistry]; one on a catalyst goes by law = \"power-law\", with an order above zero of its \
-                    solid, such as orders = { CO = 1, Fe3O4 = 1 }";
-        table.fail("equation", "has no solid, and no catalyst", help);
-        return None;
-    }
     let names = known.gas.map_or(&[][..], |gas| gas.names());
     if !drying::suits(table, &made, known.solids, names) {
         return None;
@@ -128,9 +125,16 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
         .then_some(made)
 }
 
-/// True where a rate follows the amount of a solid, which catalyses a reaction of gases alone.
-fn has_catalyst(rate: &Rate) -> bool {
-    matches!(rate, Rate::Power(law) if law.solids.iter().any(|solid| solid.1 > 0.0))
+/// True where the rate of an equation of gases alone follows the amount of a solid, their catalyst; else an error.
+fn is_catalysed(table: &TableReader<'_>, rate: &Rate) -> bool {
+    let catalyses = |law: &PowerLaw| law.solids.iter().any(|solid| solid.1 > 0.0);
+    let found = matches!(rate, Rate::Power(law) if catalyses(law));
+    if !found {
+        let help = "reactions among gases alone go into [gas.chemistry]; one on a catalyst goes by law = \"power-law\", with an order above zero of its \
+                    solid, such as orders = { CO = 1, Fe3O4 = 1 }";
+        table.fail("equation", "has no solid, and no catalyst", help);
+    }
+    found
 }
 
 /// Solids and gases of an equation with what a mole of the reaction makes of each.

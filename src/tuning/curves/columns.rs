@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::CurveFileError;
-use super::curve_column::{CurveColumn, bare, is_unit};
+use super::curve_column::{CurveColumn, bare, parted};
 use super::sheet::Sheet;
 
 /// What a case says of a column.
@@ -26,28 +26,6 @@ pub(super) struct FoundColumn {
     pub factor: f64,
     /// Offset of the temperature scale.
     pub offset: f64,
-}
-
-/// A heading as its name and its unit: `Temp./°C`, `Mass (mg)`, `Time [min]`, `mass_mg`.
-pub(super) fn parted(heading: &str) -> (String, Option<String>) {
-    let text = heading.trim();
-    for (open, close) in [('(', ')'), ('[', ']')] {
-        if let Some((name, rest)) = text.rsplit_once(open)
-            && let Some((unit, _)) = rest.split_once(close)
-        {
-            return (name.trim().to_owned(), Some(unit.trim().to_owned()));
-        }
-    }
-    for sign in ["/", ", ", " in ", "_"] {
-        // DTG/(%/min) and dm/dt/%/min: the unit is the longest end that is one.
-        for (place, _) in text.match_indices(sign) {
-            let unit = &text[place + sign.len()..];
-            if is_unit(unit) {
-                return (text[..place].trim().to_owned(), Some(bare(unit).to_owned()));
-            }
-        }
-    }
-    (text.to_owned(), None)
 }
 
 /// Place of the column of a heading, its unit left out or not, or of a number from 1.

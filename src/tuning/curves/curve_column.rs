@@ -143,6 +143,28 @@ impl CurveColumn {
     }
 }
 
+/// A heading as its name and its unit: `Temp./°C`, `Mass (mg)`, `Time [min]`, `mass_mg`.
+pub(super) fn parted(heading: &str) -> (String, Option<String>) {
+    let text = heading.trim();
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if let Some((name, rest)) = text.rsplit_once(open)
+            && let Some((unit, _)) = rest.split_once(close)
+        {
+            return (name.trim().to_owned(), Some(unit.trim().to_owned()));
+        }
+    }
+    for sign in ["/", ", ", " in ", "_"] {
+        // DTG/(%/min) and dm/dt/%/min: the unit is the longest end that is one.
+        for (place, _) in text.match_indices(sign) {
+            let unit = &text[place + sign.len()..];
+            if is_unit(unit) {
+                return (text[..place].trim().to_owned(), Some(bare(unit).to_owned()));
+            }
+        }
+    }
+    (text.to_owned(), None)
+}
+
 /// True of a text that is a unit of some column.
 pub(super) fn is_unit(text: &str) -> bool {
     let bare = bare(text);

@@ -313,7 +313,7 @@ fn place_of_runs(
 ) -> Option<usize> {
     let means = |field: &str| match stated {
         Some(wanted) => {
-            field.trim() == wanted.trim() || super::columns::parted(field).0 == wanted.trim()
+            field.trim() == wanted.trim() || super::curve_column::parted(field).0 == wanted.trim()
         }
         None => field.trim().eq_ignore_ascii_case("run"),
     };
