@@ -347,7 +347,7 @@ impl RadialPhysics {
     /// True where no shell has less than nothing of a solid or a gas.
     fn is_positive(&self, lane: usize, ws: &RadialWorkspace) -> bool {
         let g = ws.gases;
-        // What is used up halves down to the least number that there is, and may be that below nothing.
+        // What is used up falls to subnormal numbers, whose round-off may leave it below zero.
         let mut amounts = ws.now.amount.iter();
         let solids = amounts.all(|n| n[lane] >= -f64::MIN_POSITIVE);
         let gases = ws.now_gas.chunks_exact(g.max(1)).all(|own| {
