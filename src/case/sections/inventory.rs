@@ -37,13 +37,10 @@ pub(super) fn inventory(
         .map(|s| {
             let held = |own: &Vec<f64>| own.get(s).is_some_and(|y| *y > 0.0);
             let mut turned = reactions.iter().flat_map(|one| &one.solids);
-            let catalyses = |one: &Reaction| match &one.rate {
-                Rate::Power(law) => law.solids.iter().any(|part| part.0 == s && part.1 > 0.0),
-                _ => false,
-            };
+            let mut catalysts = reactions.iter().flat_map(Reaction::catalysts);
             compositions.iter().any(held)
                 || turned.any(|part| part.0 == s)
-                || reactions.iter().any(catalyses)
+                || catalysts.any(|one| one == s)
         })
         .collect();
     let place = |s: usize| used[..s].iter().filter(|used| **used).count();

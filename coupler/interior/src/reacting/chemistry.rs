@@ -132,6 +132,11 @@ impl SolidChemistry {
         &self.moving
     }
 
+    /// Solids on which gases react with each other.
+    pub(super) fn catalysts(&self) -> impl Iterator<Item = usize> {
+        self.reactions.iter().flat_map(Reaction::catalysts)
+    }
+
     /// Moles that a mole of a reaction makes (+) or uses (−) of each solid, by its place in `moving`.
     pub(super) fn effects(&self, reaction: usize) -> &[(usize, f64)] {
         &self.effects[reaction]

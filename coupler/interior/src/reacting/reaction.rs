@@ -23,6 +23,15 @@ pub struct Reaction {
 }
 
 impl Reaction {
+    /// Solids whose amounts a reaction of gases alone follows.
+    pub fn catalysts(&self) -> impl Iterator<Item = usize> {
+        let orders = match &self.rate {
+            Rate::Power(law) if self.solids.is_empty() => &law.solids[..],
+            _ => &[],
+        };
+        orders.iter().filter(|one| one.1 > 0.0).map(|one| one.0)
+    }
+
     /// The gas and the solid between which a reaction dries a particle.
     pub(super) fn vapour_and_water(&self) -> Option<(usize, usize)> {
         let (gas, solid) = (self.gases.first()?, self.solids.first()?);

@@ -247,12 +247,13 @@ impl Reacting {
         }
     }
 
-    /// True where a particle holds a solid that some reaction uses or makes.
+    /// True where a particle holds a solid that some reaction uses, makes, or goes on.
     fn can_react(&self, p: usize) -> bool {
         let solids = self.chemistry.solids.len();
         let amounts = &self.committed.amount[p * solids..(p + 1) * solids];
-        let moving = self.chemistry.moving().iter();
-        moving.copied().any(|s| amounts[s] > 0.0)
+        let mut moving = self.chemistry.moving().iter();
+        let mut catalysts = self.chemistry.catalysts();
+        moving.any(|s| amounts[*s] > 0.0) || catalysts.any(|s| amounts[s] > 0.0)
     }
 }
 
