@@ -383,12 +383,18 @@ fn add(
         lists.push(values);
     }
     let width = reference.components.max(1);
+    // Of rows of any length what neither has is no number in both.
+    let ragged = arrays[0].contains_key(&format!("{name}.lengths"));
+    let apart = |a: &f64, b: &f64| match ragged && a.is_nan() && b.is_nan() {
+        true => 0.0,
+        false => (a - b).powi(2),
+    };
     for (first, second, sum) in sums {
         let rows = lists[*first]
             .chunks(width)
             .zip(lists[*second].chunks(width));
         for (place, (a, b)) in rows.enumerate() {
-            let squared = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+            let squared = a.iter().zip(b).map(|(a, b)| apart(a, b)).sum();
             let id = ids
                 .and_then(|ids| ids.get(place))
                 .map_or(place as u64, |&id| id as u64);
