@@ -10,9 +10,9 @@ use calcine::results::read::Series;
 
 use crate::support::{killed, program};
 
-/// The lime of the stone at the end, and its ledger closed.
-fn lime(out: &Path, words: &[&str], set: &[&str]) -> f64 {
-    program::run(&program::shipped("calcining-stone"), out, words, set);
+/// A shipped case that is run, its ledger closed.
+fn closed(case: &str, out: &Path, words: &[&str], set: &[&str]) -> Summary {
+    program::run(&program::shipped(case), out, words, set);
     let summary = Summary::read(out).unwrap();
     for name in ["mass", "energy", "energy_exchange", "particle_mass"] {
         let error = summary.ledger.lines[name].relative_error;
@@ -22,6 +22,12 @@ fn lime(out: &Path, words: &[&str], set: &[&str]) -> f64 {
         let error = line.relative_error;
         assert!(error < 1e-12, "{element}: {error}");
     }
+    summary
+}
+
+/// The lime of the stone at the end.
+fn lime(out: &Path, words: &[&str], set: &[&str]) -> f64 {
+    closed("calcining-stone", out, words, set);
     let series = Series::read(out).unwrap();
     *series.column("quantities.lime").last().unwrap()
 }
@@ -136,6 +142,12 @@ every = "400 s"
 [[quantities]]
 name = "mass"
 measure = { particles = "mass", statistic = "mean" }
+[[quantities]]
+name = "shells"
+measure = { particles = "shell_count", statistic = "mean" }
+[[quantities]]
+name = "centre"
+measure = { particles = "centre_temperature", statistic = "mean" }
 "#;
 
 #[test]
@@ -153,6 +165,67 @@ fn a_ball_in_lean_oxygen_takes_its_shells_where_the_oxygen_runs_out_inside() {
         all > 1e-6 && (auto / all - 1.0).abs() < 1e-3,
         "{auto} for {all}"
     );
+}
+
+#[test]
+fn runs_with_and_without_shells_are_compared_by_what_both_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = LEAN.replace(
+        "every = \"400 s\"",
+        "every = \"200 s\"\nparticles = [\"temperature\", \"inside\"]",
+    );
+    let thin = [
+        &text[..text.find("inside").unwrap()],
+        &text[text.find("[gas]").unwrap()..],
+    ]
+    .concat();
+    let thin = thin
+        .replace("first-order", "power-law")
+        .replace("{ O2 = 1 }", "{ C = 1, O2 = 1 }");
+    // The second one does not turn, the third one is thin.
+    let late = "shells = 20\nturn_temperature = \"500 K\"\nturn_pressure = 0.9999";
+    let texts = [
+        text.replace("\"auto\"", "\"radial\""),
+        text.replace("shells = 20", late),
+        thin,
+    ];
+    let runs: Vec<(String, PathBuf)> = ["all", "one", "thin"]
+        .into_iter()
+        .zip(&texts)
+        .map(|(name, text)| {
+            let out = program::run_text(folder.path(), name, text, &[]);
+            (name.to_owned(), out)
+        })
+        .collect();
+    let quantity = |run: usize, name: &str| {
+        let summary = Summary::read(&runs[run].1).unwrap();
+        summary.quantities[name].value.unwrap()
+    };
+    assert_eq!(
+        [0, 1, 2].map(|run| quantity(run, "shells")),
+        [20.0, 1.0, 1.0]
+    );
+    for run in 0..3 {
+        let centre = quantity(run, "centre");
+        assert!((1100.0..1300.0).contains(&centre), "{run}: {centre}");
+    }
+    let case = calcine::case::parse(Path::new("lean.toml"), &texts[0], &[]).unwrap();
+    let fields = |runs: &[(String, PathBuf)]| {
+        let fields = calcine::compare::compare(&case, runs).unwrap().fields;
+        let largest = |one: &calcine::compare::FieldDifference| one.worst().unwrap().maximum;
+        let all = fields.iter().map(|one| (one.name.clone(), largest(one)));
+        all.collect::<std::collections::BTreeMap<String, f64>>()
+    };
+    let both = fields(&runs[..2]);
+    assert_eq!(both["particles.shell_count"], 19.0);
+    assert!(both["particles.mean_temperature"] < 20.0, "{both:?}");
+    assert!(
+        !both.contains_key("particles.shell_temperature"),
+        "{both:?}"
+    );
+    let all = fields(&runs);
+    assert!(all.contains_key("particles.temperature"), "{all:?}");
+    assert!(!all.contains_key("particles.mean_temperature"), "{all:?}");
 }
 
 /// Two balls in hot surroundings that touch and see each other, of a material with or without shells; the gas carries nothing to speak of.
@@ -273,18 +346,9 @@ fn radiating_shells_have_the_same_bits_on_one_thread_and_after_they_resume() {
     });
 }
 
-/// Mean mass fraction of hydrogen at the outlet of the shipped catalyst pellet, its ledger closed.
+/// Mean mass fraction of hydrogen at the outlet of the shipped catalyst pellet.
 fn hydrogen(out: &Path, words: &[&str], set: &[&str]) -> f64 {
-    program::run(&program::shipped("catalyst-pellet"), out, words, set);
-    let summary = Summary::read(out).unwrap();
-    for name in ["mass", "energy", "energy_exchange", "particle_mass"] {
-        let error = summary.ledger.lines[name].relative_error;
-        assert!(error < 1e-12, "{name}: {error}");
-    }
-    for (element, line) in &summary.ledger.elements {
-        let error = line.relative_error;
-        assert!(error < 1e-12, "{element}: {error}");
-    }
+    let summary = closed("catalyst-pellet", out, words, set);
     summary.quantities["outlet_h2"].value.unwrap()
 }
 

@@ -171,6 +171,39 @@ fn targets_have_the_heating_rate_of_their_ramp() {
 }
 
 #[test]
+fn a_file_of_a_few_rows_is_no_curve() {
+    for rows in 1..5 {
+        let text = "Time (min);Temp (degC);Mass (%)\n".to_owned() + &"1;20;100\n".repeat(rows);
+        let told = told(CASE, &text);
+        let few = format!("{rows} rows of numbers are no curve");
+        assert!(told.contains(&few), "{told}");
+    }
+}
+
+#[test]
+fn bounds_of_several_decades_on_a_linear_scale_are_told() {
+    let linear = |low: &str, high: &str| {
+        let case = CASE.to_owned();
+        let (start, end) = {
+            let start = case.find("[parameters.pre_exponential]").unwrap();
+            let end = start + case[start + 1..].find('[').unwrap() + 1;
+            (start, end)
+        };
+        let bounds = format!(
+            "[parameters.pre_exponential]\nlow = \"{low}\"\nhigh = \"{high}\"\nscale = \"linear\"\n"
+        );
+        let case = [&case[..start], &bounds, &case[end..]].concat();
+        warned(&case, &[("a.csv", &plain())])
+    };
+    let [told] = &linear("1e3 1/s", "1e15 1/s")[..] else {
+        panic!("one warning");
+    };
+    assert!(told.contains("scale = \"logarithmic\""), "{told}");
+    assert_eq!(linear("0 1/s", "1e9 1/s").len(), 1);
+    assert_eq!(linear("1e9 1/s", "1e12 1/s"), Vec::<String>::new());
+}
+
+#[test]
 fn a_file_that_two_targets_name_is_told() {
     let twice = format!("{CASE}[[targets]]\nfile = \"a.csv\"\nfit = false\n");
     let [told] = &warned(&twice, &[("a.csv", &plain())])[..] else {

@@ -9,6 +9,7 @@ use calcine_physics::{Vec3, sphere};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::zone::Zone;
 use crate::motion::{NewParticle, ParticleChanges};
+use crate::neighbourhood::Neighbourhood;
 use crate::outflows::Outflows;
 use crate::packing::random::SplitMix64;
 use crate::packing::{PackingError, Sizes};
@@ -246,6 +247,7 @@ impl FeedsAndOutlets {
         due.rows.iter().for_each(|&row| gone[row] = true);
         for (index, feed) in self.feeds.iter().enumerate() {
             self.due[0][index] += feed.rate * moment.within(feed.period);
+            let mut beside: Option<Neighbourhood> = None;
             loop {
                 let number = self.drawn[index];
                 let (radius, mass) = feed.particle(number)?;
@@ -253,23 +255,23 @@ impl FeedsAndOutlets {
                     break;
                 }
                 let mut random = SplitMix64(mixed(feed.seed, number, moment.window + 1));
-                let periodicity = &self.periodicity;
-                let square =
-                    |other: Vec3, place: &Vec3| periodicity.shortest(other - place).norm_squared();
-                let free = |place: &Vec3| {
-                    let old = (0..particles.len()).filter(|&row| !gone[row]).all(|row| {
-                        let apart = particles.radius[row] + radius;
-                        square(particles.position[row], place) >= apart * apart
+                let mut others = beside
+                    .take_if(|known| known.reaches(radius))
+                    .unwrap_or_else(|| {
+                        let old = (0..particles.len()).filter(|&row| !gone[row]);
+                        let old = old.map(|row| (particles.position[row], particles.radius[row]));
+                        let new = due.change.insert.iter();
+                        let all = old.chain(new.map(|new| (new.position, new.radius)));
+                        let bounds = feed.zone.bounds();
+                        Neighbourhood::new(&self.periodicity, bounds, radius, all)
                     });
-                    old && due.change.insert.iter().all(|new| {
-                        let apart = new.radius + radius;
-                        square(new.position, place) >= apart * apart
-                    })
-                };
                 let place = (0..TRIES)
-                    .map(|_| periodicity.wrap(within(&feed.zone, radius, &mut random)))
-                    .find(free);
-                let Some(position) = place else { break };
+                    .map(|_| within(&feed.zone, radius, &mut random))
+                    .find(|place| others.has_room(*place, radius));
+                let Some(place) = place else { break };
+                let position = self.periodicity.wrap(place);
+                others.put(position, radius);
+                beside = Some(others);
                 due.change.insert.push(NewParticle {
                     id: self.next_id,
                     population: feed.population,

@@ -28,6 +28,7 @@ pub mod models;
 pub mod momentum_model;
 pub mod motion;
 pub mod named_columns;
+mod neighbourhood;
 pub mod observer;
 pub mod outflows;
 pub mod packing;

@@ -120,6 +120,10 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
             SizeChange::Constant,
         )
     };
+    let standing = || StandingGas {
+        model: case.gas.properties.clone(),
+        composition: case.gas.composition.clone(),
+    };
     let pores = match &chemistry.gas {
         Some(gas) => {
             let mut fractions = vec![0.0; gas.names().len()];
@@ -141,10 +145,7 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
         tortuosity: spec.tortuosity.unwrap_or(1.0),
         permeability: spec.permeability.unwrap_or(Permeability::Constant(1.0)),
         size,
-        standing_gas: Some(StandingGas {
-            model: case.gas.properties.clone(),
-            composition: case.gas.composition.clone(),
-        }),
+        standing_gas: chemistry.gas.is_none().then(standing),
     };
     let numerics = RadialNumerics {
         grid: spec.grid,

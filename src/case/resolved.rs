@@ -48,8 +48,6 @@ pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
     let exchanging = case.chemistry.reactions.iter();
     for one in exchanging.filter(|one| !one.gases.is_empty()) {
         let found = thiele(case, population, (one, gas), diameter);
-        // Of solids that are not there at the start there is nothing to tell.
-        let found = found.filter(|(number, _)| *number > 0.0);
         all.extend(found.into_iter().flat_map(|(number, kelvin)| {
             let share = material.radial.grid.share_of_layer(number);
             [
@@ -180,8 +178,7 @@ fn unresolved_layers(case: &Case) -> Vec<String> {
             // The layer of a solid that is used up in place moves on as a front.
             let lasts = shrinks || one.solids.iter().all(|solid| solid.1 >= 0.0);
             let found = thiele(case, population, (one, gas), diameter);
-            let Some((number, kelvin)) = found.filter(|one| one.0 > 0.0 && uses_gas && lasts)
-            else {
+            let Some((number, kelvin)) = found.filter(|_| uses_gas && lasts) else {
                 continue;
             };
             let share = grid.share_of_layer(number);
@@ -244,7 +241,7 @@ fn closing(case: &Case, material: usize, reaction: &Reaction) -> Option<f64> {
 
 /// R √(r/(D c)) of a reaction forwards, nothing having reacted, at the hottest temperature in K of the gas that comes in: r in
 /// mol/m³/s by the gas at the start, D the mean diffusivity in its pores, c the moles in a volume of the gas that it uses and would use
-/// up first, of all gas where it uses none.
+/// up first, of all gas where it uses none. `None` where nothing reacts at the start.
 fn thiele(
     case: &Case,
     population: &Population,
@@ -316,7 +313,7 @@ fn thiele(
     let lasting = used.map(|&(g, n)| fractions[g] * moles / -n);
     let first = lasting.reduce(f64::min).unwrap_or(moles);
     let number = radius * (rate / (diffusivity * first)).sqrt();
-    number.is_finite().then_some((number, kelvin))
+    (number.is_finite() && number > 0.0).then_some((number, kelvin))
 }
 
 #[cfg(test)]

@@ -266,6 +266,9 @@ case_words! {
         "diameter" => ParticleField("diameter"),
         "mass_fraction" => ParticleField("mass_fraction"),
         "conversion" => ParticleField("conversion"),
+        "mean_temperature" => ParticleField("mean_temperature"),
+        "centre_temperature" => ParticleField("centre_temperature"),
+        "shell_count" => ParticleField("shell_count"),
     }
     Passing { "heat" => Passing::Heat, "mass" => Passing::Mass, "species" => Passing::Species }
     ForcePart { "pressure" => ForcePart::Pressure, "viscous" => ForcePart::Viscous, "total" => ForcePart::Total }

@@ -11,6 +11,7 @@ use super::source::Source;
 use super::spread::Spread;
 use crate::case::model::{Case, FieldBand, Measure, ToleranceBand};
 use crate::report::plot::between;
+use crate::results::lengths_of;
 use crate::results::read::{self, Arrays};
 
 /// The difference between two runs.
@@ -317,13 +318,12 @@ fn snapshots(
             .map(|list| read::arrays(&list[number].1))
             .collect::<Result<Vec<_>, _>>()?;
         let arrays = match per {
-            "particle" => common::particles(arrays),
+            "particle" => common::rows_alike(common::particles(arrays)),
             _ => arrays,
         };
-        for name in arrays[0]
-            .keys()
-            .filter(|name| read::is_field(name) && *name != "radius")
-        {
+        let held_by_all = |name: &&String| arrays.iter().all(|own| own.contains_key(*name));
+        let fields = arrays[0].keys().filter(held_by_all);
+        for name in fields.filter(|name| read::is_field(name) && *name != "radius") {
             let place = match found.iter().position(|field| field.name == *name) {
                 Some(place) => place,
                 None => {
@@ -342,7 +342,9 @@ fn snapshots(
         let name = format!("{group}.{}", field.name);
         finish(&name, per, unit(&field.name), field.sums, field.spread)
     };
-    Ok(found.into_iter().map(named).collect())
+    // Of rows whose lengths differ in all places nothing is compared.
+    let compared = |field: &Found| field.sums.iter().all(|one| one.2.count > 0.0);
+    Ok(found.into_iter().filter(compared).map(named).collect())
 }
 
 /// A field of the snapshots in the making.
@@ -384,17 +386,19 @@ fn add(
     }
     let width = reference.components.max(1);
     // Of rows of any length what neither has is no number in both.
-    let ragged = arrays[0].contains_key(&format!("{name}.lengths"));
-    let apart = |a: &f64, b: &f64| match ragged && a.is_nan() && b.is_nan() {
-        true => 0.0,
-        false => (a - b).powi(2),
-    };
+    let ragged = arrays[0].contains_key(&lengths_of(name));
+    let neither = |(a, b): &(&f64, &f64)| ragged && a.is_nan() && b.is_nan();
     for (first, second, sum) in sums {
         let rows = lists[*first]
             .chunks(width)
             .zip(lists[*second].chunks(width));
         for (place, (a, b)) in rows.enumerate() {
-            let squared = a.iter().zip(b).map(|(a, b)| apart(a, b)).sum();
+            let held = a.iter().zip(b).filter(|pair| !neither(pair));
+            let squares: Vec<f64> = held.map(|(a, b)| (a - b).powi(2)).collect();
+            if ragged && squares.is_empty() {
+                continue;
+            }
+            let squared = squares.iter().sum();
             let id = ids
                 .and_then(|ids| ids.get(place))
                 .map_or(place as u64, |&id| id as u64);

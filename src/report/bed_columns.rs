@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::number::axis_label;
+use crate::results::lengths_of;
 use crate::results::read::{Array, Arrays, is_field};
 
 /// A field.
@@ -23,7 +24,7 @@ pub(super) fn columns(
     units: &BTreeMap<String, String>,
 ) -> Vec<BedColumn> {
     let column = |(name, array): (&String, &Array)| {
-        let ragged = name.ends_with(".lengths") || arrays.contains_key(&format!("{name}.lengths"));
+        let ragged = arrays.contains_key(&lengths_of(name));
         let fits = array.values.len() == count * array.components;
         if !is_field(name) || ragged || !fits {
             return None;

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
+use calcine_coupler::interior::radial::node_of_shell;
+
 use super::cells::all_points;
 use super::colour;
 use super::number::{axis_label, span};
 use super::plot::{Curve, Plot, Stroke};
 use super::spread::spread;
 use crate::results::ResultsError;
+use crate::results::lengths_of;
 use crate::results::read::{self, Arrays};
 
 /// Times at most.
@@ -23,11 +26,21 @@ type Profile = (String, Vec<f64>, Vec<f64>);
 /// The plots as HTML; empty where no particle has shells.
 pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
     let beds = read::collection(directory, "particles.pvd")?;
+    let Some((end, file)) = beds.last() else {
+        return Ok(String::new());
+    };
+    let at_end = read::arrays(file)?;
+    if !at_end.contains_key(FACES) {
+        return Ok(String::new());
+    }
     let [_, units] = read::units(directory);
     let mut snapshots = Vec::new();
     for number in spread(beds.len(), TIMES) {
-        snapshots.push((beds[number].0, read::arrays(&beds[number].1)?));
+        if number + 1 < beds.len() {
+            snapshots.push((beds[number].0, read::arrays(&beds[number].1)?));
+        }
     }
+    snapshots.push((*end, at_end));
     let mut plots = Vec::new();
     for name in SHOWN {
         let label = axis_label(name, units.get(name).map_or("", String::as_str));
@@ -37,8 +50,8 @@ pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
         });
         let means: Vec<Profile> = means.collect();
         plots.extend(drawn(&format!("Mean {label}"), &means));
-        let last = snapshots.last().map(|(_, arrays)| arrays);
-        let single = last.map_or_else(Vec::new, |arrays| lowest_to_highest(arrays, name));
+        let single = snapshots.last();
+        let single = single.map_or_else(Vec::new, |(_, last)| lowest_to_highest(last, name));
         plots.extend(drawn(&format!("At the end: {label}"), &single));
     }
     Ok(match plots.is_empty() {
@@ -58,7 +71,7 @@ struct Shells<'a> {
 impl<'a> Shells<'a> {
     fn of(arrays: &'a Arrays, name: &str) -> Option<Self> {
         let (column, faces) = (arrays.get(name)?, arrays.get(FACES)?);
-        let lengths = arrays.get(&format!("{FACES}.lengths"))?;
+        let lengths = arrays.get(&lengths_of(FACES))?;
         let width = column.components;
         let fits = width == faces.components
             && column.values.len() == faces.values.len()
@@ -82,11 +95,9 @@ impl<'a> Shells<'a> {
         let surface = faces.last().copied()?;
         let mut inner = 0.0;
         let node = |outer: &f64| {
-            // Where r² is its mean over the shell.
-            let square =
-                0.6 * (outer.powi(5) - f64::powi(inner, 5)) / (outer.powi(3) - f64::powi(inner, 3));
+            let place = node_of_shell(inner, *outer) / surface;
             inner = *outer;
-            square.sqrt() / surface
+            place
         };
         Some((faces.iter().map(node).collect(), &self.values[own]))
     }
@@ -197,7 +208,7 @@ mod tests {
                 FACES.to_owned(),
                 array(2, &[1.0, 2.0, 1.0, 2.0, 2.0, f64::NAN]),
             ),
-            (format!("{FACES}.lengths"), array(1, &[2.0, 2.0, 1.0])),
+            (lengths_of(FACES), array(1, &[2.0, 2.0, 1.0])),
         ]);
         let shells = Shells::of(&arrays, "shell_temperature").unwrap();
         let (radii, values) = mean(&shells).unwrap();

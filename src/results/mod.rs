@@ -45,6 +45,7 @@ pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo, unoccupied};
 pub use resume::{as_finished, clear_start, may_start_again};
+pub(crate) use snapshot::lengths_of;
 pub use summary::{Summary, Verdict, kind, must_hold_run};
 
 /// Refuses probes outside a mesh, and quantities of patches that it lacks.

@@ -298,8 +298,24 @@ fn of_particles(case: &Case, moment: &CommittedState<'_>, (field, column): Field
             })
             .collect()
         }
+        "mean_temperature" | "centre_temperature" => {
+            inside(moment, field, moment.particle_temperature.to_vec())
+        }
+        "shell_count" => inside(moment, field, vec![1.0; bed.len()]),
         _ => moment.particle_temperature.to_vec(),
     }
+}
+
+/// A column of particles with shells, and what holds of those without.
+fn inside(moment: &CommittedState<'_>, name: &str, mut thin: Vec<f64>) -> Vec<f64> {
+    let column = moment.models.named(name);
+    let found = column.and_then(|column| column.scalars());
+    for (value, own) in thin.iter_mut().zip(found.unwrap_or_default()) {
+        if !own.is_nan() {
+            *value = own;
+        }
+    }
+    thin
 }
 
 /// By how many rad the centre of mass has turned about an axis from straight below; NaN without particles.

@@ -79,18 +79,19 @@ pub type Arrays = BTreeMap<String, Array>;
 
 /// False of the arrays of a snapshot file that say where things are or which, not how they are.
 pub fn is_field(name: &str) -> bool {
-    ![
-        "points",
-        "connectivity",
-        "offsets",
-        "types",
-        "faces",
-        "faceoffsets",
-        "id",
-        "population",
-        "TimeValue",
-    ]
-    .contains(&name)
+    !name.ends_with(".lengths")
+        && ![
+            "points",
+            "connectivity",
+            "offsets",
+            "types",
+            "faces",
+            "faceoffsets",
+            "id",
+            "population",
+            "TimeValue",
+        ]
+        .contains(&name)
 }
 
 /// The snapshots of a `.pvd` file: process time in s and file.

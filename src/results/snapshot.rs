@@ -1,6 +1,6 @@
 //! Fields of a snapshot: the columns that the case asks for, with unit and description.
 
-use calcine_coupler::interior::{ColumnKind, ColumnValues, Ragged};
+use calcine_coupler::interior::{ColumnKind, ColumnShape, ColumnValues, Ragged};
 use calcine_coupler::models::ParticleColumn;
 use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
@@ -257,7 +257,7 @@ pub(super) fn particle_fields<'a>(
         let column = &one.column;
         let name = column.name.as_str();
         if fields.iter().all(|field| field.name != name) {
-            let values = values(&one.values);
+            let values = values(one);
             fields.push(field(name, column.unit, &column.description, values));
         }
     }
@@ -276,10 +276,12 @@ pub(super) fn inside(output: &Output, moment: &CommittedState<'_>) -> Vec<Partic
     }
 }
 
-/// One number a particle where each has one.
-fn values(rows: &Ragged) -> Values<'_> {
+/// One number a particle of a column that has one, and one that each of them has.
+fn values(of: &ParticleColumn) -> Values<'_> {
+    let rows = &of.values;
+    let ragged = of.column.shape == ColumnShape::Ragged;
     match rows.values() {
-        _ if !rows.lengths().all(|length| length == 1) => Values::Ragged(rows),
+        _ if ragged || !rows.lengths().all(|length| length == 1) => Values::Ragged(rows),
         ColumnValues::Real(list) => Values::Scalar(list),
         ColumnValues::Count(list) => Values::Whole(list),
     }
@@ -307,7 +309,7 @@ pub(super) fn padded(rows: &Ragged) -> (usize, Vec<f64>, Vec<u64>) {
 }
 
 /// Name of the array that says how many values each particle has in a column.
-pub(super) fn lengths_of(name: &str) -> String {
+pub(crate) fn lengths_of(name: &str) -> String {
     format!("{name}.lengths")
 }
 

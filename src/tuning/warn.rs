@@ -66,6 +66,14 @@ pub(crate) fn of_no_law(name: &str) -> String {
     format!("`parameters.{name}` has no effect: none of the laws that are compared has it")
 }
 
+/// Bounds of a number of many decades that are searched evenly.
+pub(crate) fn wide_linear(name: &str) -> String {
+    format!(
+        "`parameters.{name}` has bounds of several decades on a linear scale: nine tenths of the search lie in the topmost one, and the \
+         best value may be missed; write scale = \"logarithmic\" with a lower bound above zero"
+    )
+}
+
 /// A curve that tells nothing of energies without a law.
 pub(super) fn left_out(name: &str) -> String {
     format!("{name} is left out: it has no mass, too few values, or a conversion below 5 %")

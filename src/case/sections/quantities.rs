@@ -73,7 +73,7 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "kinetic_energy" => (Dimension::ENERGY, "J"),
         "wall_heat" => (Dimension::POWER, "W"),
         "mass" => (Dimension::MASS, "kg"),
-        "mass_fraction" | "count" | "conversion" => (Dimension::NONE, "1"),
+        "mass_fraction" | "count" | "shell_count" | "conversion" => (Dimension::NONE, "1"),
         "heat_flow" => (Dimension::POWER, "W"),
         "mass_flow" | "species_flow" => (Dimension::MASS_FLOW, "kg/s"),
         "force" => (Dimension::FORCE, "N"),

@@ -179,15 +179,22 @@ fn fits_one(
         }
         return;
     }
-    if alone || !chemistry.exchanges() {
-        // Without gas that reactions exchange pores count for what conducts alone.
-        if let (true, Some(found), Some(inner)) =
-            (parallel, material.true_density(), table.table("radial"))
-        {
-            leaves_pores(&inner, found, material.density);
-        }
+    // What is of one solid that does not react has no pores to speak of.
+    let exchanges = !alone && chemistry.exchanges();
+    if exchanges && !has_pores(table, chemistry, (index, start)) {
         return;
     }
+    if exchanges || parallel {
+        leaves_pores(table, material);
+    }
+}
+
+/// True where a material with gas in its pores says what they are; else errors.
+fn has_pores(
+    table: &TableReader<'_>,
+    chemistry: &ReactionSpec,
+    (index, start): (usize, &[f64]),
+) -> bool {
     let Some(inner) = table.table("radial") else {
         let help = "write radial = { true_densities = ..., pore_diameter = ..., tortuosity = ..., permeability = ... }";
         table.fail(
@@ -195,7 +202,7 @@ fn fits_one(
             "gives particles pores with gas, and no `radial` says what they are",
             help,
         );
-        return;
+        return false;
     };
     for (key, example) in [
         (
@@ -213,12 +220,9 @@ fn fits_one(
             inner.missing_like(key, example);
         }
     }
-    let Some(own) = chemistry
-        .true_densities
-        .get(index)
-        .filter(|own| !own.is_empty())
-    else {
-        return;
+    let own = chemistry.true_densities.get(index);
+    let Some(own) = own.filter(|own| !own.is_empty()) else {
+        return false;
     };
     let held = reached(chemistry, start);
     if let Some(s) = (0..own.len()).find(|&s| held[s] && own[s].is_infinite()) {
@@ -227,20 +231,23 @@ fn fits_one(
             chemistry.solids[s].name()
         );
         inner.fail("true_densities", rule, "add it");
-        return;
+        return false;
     }
-    let true_density = 1.0 / start.iter().zip(own).map(|(y, rho)| y / rho).sum::<f64>();
-    leaves_pores(&inner, true_density, material.density);
+    true
 }
 
-/// An error where solids of a true density in kg/m³ fill particles of a density.
-fn leaves_pores(table: &TableReader<'_>, true_density: f64, density: f64) {
-    if true_density > density {
+/// An error where the solids of particles fill them at the start.
+fn leaves_pores(table: &TableReader<'_>, material: &MaterialSpec) {
+    let (Some(found), Some(inner)) = (material.true_density(), table.table("radial")) else {
+        return;
+    };
+    let density = material.density;
+    if found > density {
         return;
     }
     let rule = format!(
-        "come to {true_density:.0} kg/m^3 at the start, which leaves no pores in a particle of `density` {density:.0} kg/m^3"
+        "come to {found:.0} kg/m^3 at the start, which leaves no pores in a particle of `density` {density:.0} kg/m^3"
     );
     let help = "true densities are without pores, above that of the particle: correct one of them";
-    table.fail("true_densities", rule, help);
+    inner.fail("true_densities", rule, help);
 }

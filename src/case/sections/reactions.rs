@@ -127,8 +127,7 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
 
 /// True where the rate of an equation of gases alone follows the amount of a solid, their catalyst; else an error.
 fn is_catalysed(table: &TableReader<'_>, rate: &Rate) -> bool {
-    let catalyses = |law: &PowerLaw| law.solids.iter().any(|solid| solid.1 > 0.0);
-    let found = matches!(rate, Rate::Power(law) if catalyses(law));
+    let found = rate.followed_solids().next().is_some();
     if !found {
         let help = "reactions among gases alone go into [gas.chemistry]; one on a catalyst goes by law = \"power-law\", with an order above zero of its \
                     solid, such as orders = { CO = 1, Fe3O4 = 1 }";

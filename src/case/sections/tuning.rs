@@ -20,6 +20,8 @@ use crate::tuning::warn;
 const FORMAT: u64 = 1;
 /// Share of the sample's mass that all reactants may exceed it by, for round-off.
 const ROUND_OFF: f64 = 1e-9;
+/// Upper over lower bound above which a linear scale leaves the lower decades out of the search.
+const WIDE_LINEAR: f64 = 1e3;
 
 /// Reads a tuning; `None` where it could not be read (its problems are recorded).
 pub(in crate::case) fn tuning(
@@ -396,6 +398,9 @@ fn parameters(
                 help,
             );
             continue;
+        }
+        if own.logarithmic && !logarithmic && high > WIDE_LINEAR * low {
+            warnings.push(warn::wide_linear(&name));
         }
         all.push(TunedParameter {
             name,

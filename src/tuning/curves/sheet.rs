@@ -79,6 +79,8 @@ pub(super) struct Sheet {
 
 /// Rows that must be found before columns are believed in.
 const LEAST_ROWS: usize = 5;
+/// Lines of a file that is too short for a curve.
+const SHORT: usize = 10;
 /// Columns that are looked at for texts where no table of numbers is found.
 const MOST_COLUMNS: usize = 40;
 /// Lines in which the heading of the column of runs is looked for.
@@ -376,6 +378,16 @@ fn manner(
     let Some(&(count, width, manner)) = found.first() else {
         if let Some(error) = column_of_texts(path, lines, &manners) {
             return Err(error);
+        }
+        // A few rows at the end of a short file are a table that lacks the rest.
+        let rows = manners.iter().map(|manner| manner.stretch(lines));
+        let at_end =
+            rows.filter(|(first, count, width)| *width > 1 && first + count == lines.len());
+        let count = at_end.map(|one| one.1).max();
+        if let Some(count) = count.filter(|_| lines.len() < SHORT) {
+            let fact = format!("{count} rows of numbers are no curve");
+            let help = "export the whole curve, ten rows or more";
+            return Err(CurveFileError::new(path, None, fact, help));
         }
         let (line, text) = lines[lines.len() / 2];
         let fact = format!(

@@ -55,6 +55,11 @@ impl Radial {
         moles * GAS_CONSTANT * self.shell_temperature(row, shell) / pores
     }
 
+    /// Porosity of a shell.
+    pub(super) fn shell_porosity(&self, row: &[f64], shell: usize) -> f64 {
+        1.0 - self.physics.filled(self.shell_amounts(row, shell)) / self.shell_volume(row, shell)
+    }
+
     /// Mass in kg, with the gas in its pores.
     pub(super) fn mass(&self, row: &[f64]) -> f64 {
         let mut mass = 0.0;

@@ -20,8 +20,11 @@ pub(super) enum RadialColumn {
     Conversion,
     ShellConversion,
     Radii,
+    Count,
     Pressure,
+    Porosity,
     Fraction(usize),
+    ShellFraction(usize),
 }
 
 /// The columns of a material.
@@ -38,13 +41,15 @@ pub(super) fn kinds(physics: &RadialPhysics) -> Vec<RadialColumn> {
         RadialColumn::Mean,
         RadialColumn::Centre,
         RadialColumn::Radii,
+        RadialColumn::Count,
     ]);
     if physics.reactions() > 0 {
         all.extend([RadialColumn::Conversion, RadialColumn::ShellConversion]);
-        all.extend(solids.map(RadialColumn::Fraction));
+        all.extend(solids.clone().map(RadialColumn::Fraction));
+        all.extend(solids.map(RadialColumn::ShellFraction));
     }
     if physics.gases() > 0 {
-        all.push(RadialColumn::Pressure);
+        all.extend([RadialColumn::Pressure, RadialColumn::Porosity]);
     }
     all
 }
@@ -122,6 +127,12 @@ fn column(kind: RadialColumn, physics: &RadialPhysics) -> StateColumn {
         )
         .ragged()
         .in_group(SHELLS),
+        RadialColumn::Count => derived(
+            "shell_count",
+            "1",
+            "number of shells, one of a particle that has not turned radial",
+        )
+        .in_group(SHELLS),
         RadialColumn::Conversion => derived(
             "conversion",
             "1",
@@ -135,6 +146,16 @@ fn column(kind: RadialColumn, physics: &RadialPhysics) -> StateColumn {
             "shell_pressure",
             "Pa",
             "pressure in the pores of each shell",
+        )
+        .ragged()
+        .in_group(SHELLS),
+        RadialColumn::Porosity => derived("shell_porosity", "1", "porosity of each shell")
+            .ragged()
+            .in_group(SHELLS),
+        RadialColumn::ShellFraction(k) => derived(
+            &format!("shell_fraction.{}", solid(k)),
+            "1",
+            "mass fraction of this solid in the solids of each shell",
         )
         .ragged()
         .in_group(SHELLS),

@@ -38,7 +38,7 @@ impl ShellGrid {
     }
 
     /// What these shells let a first-order reaction of a Thiele number R √(k/D) take, over what it takes: the effectiveness by finite
-    /// volumes over 3 (φ coth φ − 1)/φ² (Thiele, Ind. Eng. Chem. 31 (1939) 916).
+    /// volumes over 3 (φ coth φ − 1)/φ², of numbers above zero (Thiele, Ind. Eng. Chem. 31 (1939) 916).
     pub fn share_of_layer(&self, thiele: f64) -> f64 {
         let shares = self.shares();
         let square = thiele * thiele;
@@ -172,6 +172,12 @@ pub(super) fn mean_squares(shares: &[f64]) -> Vec<f64> {
     shares.iter().map(one).collect()
 }
 
+/// Radius in m at which the value of a shell between two radii in m stands.
+pub fn node_of_shell(inner: f64, outer: f64) -> f64 {
+    let [square] = mean_square(Lanes([inner]), Lanes([outer])).0;
+    square.sqrt()
+}
+
 /// The mean of r² over a shell between two radii in m: 3/5 (b⁵ − a⁵)/(b³ − a³).
 #[inline(always)]
 fn mean_square<const N: usize>(a: Lanes<N>, b: Lanes<N>) -> Lanes<N> {
@@ -215,12 +221,15 @@ mod tests {
             assert_eq!(faces[39], 1.0);
             let thick = |k: usize| faces[k] - if k == 0 { 0.0 } else { faces[k - 1] };
             assert!((1..40).all(|k| thick(k) < thick(k - 1) && thick(k) > 0.0));
-            // Within s = 4/φ are 1 - exp(-2) of the ten elevenths and 4/φ of the eleventh.
-            if number > 4.0 {
-                let depth = 4.0 / number;
-                let layer = faces.iter().filter(|face| **face > 1.0 - depth).count() as f64;
-                let share = ((1.0 - f64::exp(-2.0)) * 2.0 + 0.2 * depth) / (2.0 + 0.2);
-                assert!((layer - 40.0 * share).abs() <= 1.0, "{number}: {layer}");
+            // Ten parts of the shells lie as exp(-φ s/2) goes, one part evenly.
+            for (k, face) in faces.iter().enumerate() {
+                let depth = 1.0 - face;
+                let layer = |s: f64| -f64::exp_m1(-0.5 * number * s);
+                let share = (10.0 * layer(depth) + depth) / (10.0 * layer(1.0) + 1.0);
+                assert!(
+                    (share * 40.0 - (39 - k) as f64).abs() < 1e-9,
+                    "{number} {k}"
+                );
             }
         }
     }

@@ -31,7 +31,7 @@ mod transport;
 mod workspace;
 
 pub use attempt::RadialStalled;
-pub use grid::{ShellGrading, ShellGrid};
+pub use grid::{ShellGrading, ShellGrid, node_of_shell};
 pub use material::{PoreGas, PorousSolid, RadialNumerics, ShellResolution, StandingGas};
 pub use physics::RadialError;
 

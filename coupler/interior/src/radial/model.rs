@@ -367,7 +367,14 @@ impl Radial {
                     out.push(sphere::radius_of(within));
                 }
             }
+            RadialColumn::Count => out.push(self.shells_of(row) as f64),
             RadialColumn::Pressure => out.extend(shells.map(|k| self.shell_pressure(row, k))),
+            RadialColumn::Porosity => out.extend(shells.map(|k| self.shell_porosity(row, k))),
+            RadialColumn::ShellFraction(s) => out.extend(shells.map(|k| {
+                let amounts = self.shell_amounts(row, k);
+                let chemistry = &self.physics.chemistry;
+                amounts[s] * chemistry.solids[s].molar_mass() / chemistry.mass(amounts)
+            })),
             RadialColumn::Fraction(s) => {
                 let molar = self.physics.chemistry.solids[s].molar_mass();
                 let own: f64 = shells.map(|k| self.shell_amounts(row, k)[s]).sum();

@@ -25,11 +25,8 @@ pub struct Reaction {
 impl Reaction {
     /// Solids whose amounts a reaction of gases alone follows.
     pub fn catalysts(&self) -> impl Iterator<Item = usize> {
-        let orders = match &self.rate {
-            Rate::Power(law) if self.solids.is_empty() => &law.solids[..],
-            _ => &[],
-        };
-        orders.iter().filter(|one| one.1 > 0.0).map(|one| one.0)
+        let alone = self.solids.is_empty();
+        self.rate.followed_solids().filter(move |_| alone)
     }
 
     /// The gas and the solid between which a reaction dries a particle.
@@ -91,6 +88,15 @@ impl Rate {
                 Conversion::RandomPore(_) => &conversion::RANDOM_PORE,
             },
         }
+    }
+
+    /// Solids that it follows by an order above zero.
+    pub fn followed_solids(&self) -> impl Iterator<Item = usize> {
+        let orders = match self {
+            Self::Power(law) => &law.solids[..],
+            _ => &[],
+        };
+        orders.iter().filter(|one| one.1 > 0.0).map(|one| one.0)
     }
 
     /// True where only thin particles know the law: it has layers, a wet surface or the start of a particle.

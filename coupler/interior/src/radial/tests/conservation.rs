@@ -121,3 +121,36 @@ fn a_state_that_is_read_and_loaded_goes_on_with_the_same_bits() {
     }
     assert_eq!(stone.committed, other.committed);
 }
+
+#[test]
+fn shells_show_their_solids_and_what_pores_they_leave() {
+    let mut stone = limestone(1.235e15, RadialNumerics::new(grid(10)));
+    put(&mut stone, LIME_RADIUS, LIME_DENSITY, 1100.0, 1);
+    for _ in 0..20 {
+        window(&mut stone, &flue_gas(1400.0), LIME_RADIUS, 20.0);
+    }
+    let column = |name: &str| {
+        let place = stone.columns().iter().position(|one| one.name == name);
+        let mut out = crate::column::Ragged::new(crate::column::ColumnKind::Real);
+        stone.read(place.unwrap(), &mut out);
+        out.reals(0).to_vec()
+    };
+    assert_eq!(column("shell_count"), [10.0]);
+    let [carbonate, lime] = ["CaCO3", "CaO"].map(|name| column(&format!("shell_fraction.{name}")));
+    let porosity = column("shell_porosity");
+    for (k, converted) in column("shell_conversion").iter().enumerate() {
+        // Of a mole of carbonate (100.087 g), 56.077 g of lime by the share that is converted.
+        let [left, made] = [100.087 * (1.0 - converted), 56.077 * converted];
+        let found = [carbonate[k], lime[k], porosity[k]];
+        let volume = 100.087 / LIME_DENSITY;
+        let exact = [
+            left / (left + made),
+            made / (left + made),
+            1.0 - (left / 2711.0 + made / 3340.0) / volume,
+        ];
+        for (found, exact) in found.iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-5, "{k}: {found} {exact}");
+        }
+    }
+    assert!(lime[9] > 0.99 && lime[0] < 0.5, "{lime:?}");
+}

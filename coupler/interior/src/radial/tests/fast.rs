@@ -17,6 +17,8 @@ use super::verification::{
     DILUTE, KELVIN, RADIUS, diffusivity, dilute_gas, first_order, pellet, wide,
 };
 
+use crate::radial::rates::{ShellRate, ShellState};
+use crate::radial::side_by_side::Wide;
 use crate::radial::{PoreGas, Radial, RadialNumerics};
 use crate::reacting::{Rate, Reaction, SolidChemistry};
 
@@ -236,6 +238,35 @@ fn a_reaction_of_order_zero_ends_where_its_gas_does() {
             let found = -passed[0] / (full * sphere::volume(RADIUS) * 1e3);
             assert!((found - exact).abs() < 5e-3, "{thiele_squared}: {found}");
         }
+    }
+}
+
+#[test]
+fn a_gas_without_an_order_ends_a_reaction_below_a_thousandth_of_a_pascal() {
+    let rate = Rate::Power(PowerLaw {
+        rate_constant: constant(2.0),
+        in_series: None,
+        solids: Vec::new(),
+        gases: Vec::new(),
+    });
+    let model = pellet(rate, Vec::new(), wide(), grid(5));
+    let at = |pascal: f64| {
+        let mut out = ShellRate::new(2, 2);
+        let state = ShellState {
+            temperature: Wide::all(KELVIN),
+            pressures: &[Wide::all(pascal), Wide::all(1e5)],
+            amounts: &[Wide::all(1.0), Wide::all(0.0)],
+            first: &[Wide::all(1.0), Wide::all(0.0)],
+            volume: Wide::all(3.0),
+        };
+        model.physics.rate(0, &state, &mut out);
+        [out.value[0], out.by_pressure[0][0]]
+    };
+    // x (2 - x) of 2 mol/m³/s in 3 m³, and its slope.
+    for (pascal, value, slope) in [(1.0, 6.0, 0.0), (5e-4, 4.5, 6e3), (0.0, 0.0, 12e3)] {
+        let found = at(pascal);
+        assert!((found[0] - value).abs() < 1e-12, "{pascal}: {found:?}");
+        assert!((found[1] - slope).abs() < 1e-8, "{pascal}: {found:?}");
     }
 }
 

@@ -349,3 +349,49 @@ fn a_front_that_heat_limits_goes_as_its_law_has_it() {
         assert!((now / exact - 1.0).abs() < 0.01, "{biot}: {now}");
     }
 }
+
+#[test]
+fn a_gas_that_stands_in_the_pores_is_swept_as_stefan_has_it() {
+    // A gas that is made evenly, s, flows out by s r/3; another one does not flow: x = x_s exp(-s (R² - r²)/(6 c D)) (Bird, Stewart and
+    // Lightfoot, Transport Phenomena, 2nd ed. (2002), section 18.2, for a sphere).
+    for (number, shells) in [(2.0, 5), (2.0, 20), (12.0, 20), (12.0, 40)] {
+        let moles = 1e5 / (GAS_CONSTANT * KELVIN);
+        let source = 6.0 * number * moles * diffusivity() / (RADIUS * RADIUS);
+        let rate = Rate::Power(PowerLaw {
+            rate_constant: Arrhenius {
+                factor: source,
+                exponent: 0.0,
+                activation_energy: 0.0,
+            },
+            in_series: None,
+            solids: Vec::new(),
+            gases: Vec::new(),
+        });
+        let even = grid(shells);
+        let mut model = pellet(rate, vec![(0, -1.0), (1, 1.0)], wide(), even);
+        model.physics.gas_moles[..2].copy_from_slice(&[1.0, 0.0]);
+        model.physics.chemistry.reactions[0].gases = vec![(0, 1.0)];
+        model.physics.ends_with[0].clear();
+        put(&mut model, RADIUS, 2000.0, KELVIN, 1);
+        let outside = 0.5;
+        let gas = Mixture::new(["CO", "N2"]).unwrap();
+        let still = Still {
+            composition: gas.mass_fractions(&[1.0 - outside, outside]),
+            ..dilute_gas(1e7)
+        };
+        for _ in 0..20 {
+            window(&mut model, &still, RADIUS, 1.0);
+        }
+        let row = model.row(0);
+        let squares = crate::radial::grid::mean_squares(&even.shares());
+        for (k, square) in squares.iter().enumerate() {
+            let own = model.shell_gas(row, k);
+            let found = own[1] / (own[0] + own[1]);
+            let exact = outside * f64::exp(-number * (1.0 - square));
+            assert!(
+                (found / exact).ln().abs() < 1.5e-5 * number * number,
+                "{number} {shells} {k}: {found} {exact}"
+            );
+        }
+    }
+}
