@@ -174,6 +174,8 @@ fn runs_with_and_without_shells_are_compared_by_what_both_have() {
         "every = \"400 s\"",
         "every = \"200 s\"\nparticles = [\"temperature\", \"inside\"]",
     );
+    // So slow that oxygen is nearly the same throughout.
+    let text = text.replace("factor = 1000", "factor = 1e-5");
     let thin = [
         &text[..text.find("inside").unwrap()],
         &text[text.find("[gas]").unwrap()..],
@@ -183,7 +185,7 @@ fn runs_with_and_without_shells_are_compared_by_what_both_have() {
         .replace("first-order", "power-law")
         .replace("{ O2 = 1 }", "{ C = 1, O2 = 1 }");
     // The second one does not turn, the third one is thin.
-    let late = "shells = 20\nturn_temperature = \"500 K\"\nturn_pressure = 0.9999";
+    let late = "shells = 20\nturn_temperature = \"500 K\"";
     let texts = [
         text.replace("\"auto\"", "\"radial\""),
         text.replace("shells = 20", late),
