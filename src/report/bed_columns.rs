@@ -17,14 +17,16 @@ pub(super) struct BedColumn {
     pub values: Vec<f64>,
 }
 
-/// All that has one number, or one vector, for each of `count`; of vectors the magnitude.
+/// All that has one number, or one vector, for each of `count`; of vectors the magnitude. A number that only some have, as those with
+/// shells beside those without, is NaN for the others.
 pub(super) fn columns(
     arrays: &Arrays,
     count: usize,
     units: &BTreeMap<String, String>,
 ) -> Vec<BedColumn> {
     let column = |(name, array): (&String, &Array)| {
-        let ragged = arrays.contains_key(&lengths_of(name));
+        let lengths = arrays.get(&lengths_of(name));
+        let ragged = lengths.is_some_and(|own| array.components > 1 || !own.values.contains(&0.0));
         let fits = array.values.len() == count * array.components;
         if !is_field(name) || ragged || !fits {
             return None;
@@ -75,7 +77,15 @@ mod tests {
                 array(3, &[3.0, 4.0, 0.0, 0.0, 0.0, 2.0]),
             ),
             ("shell".to_owned(), array(3, &[0.0; 6])),
-            ("shell.lengths".to_owned(), array(1, &[3.0, 2.0])),
+            ("shell.lengths".to_owned(), array(1, &[3.0, 0.0])),
+            (
+                "centre_temperature".to_owned(),
+                array(1, &[300.0, f64::NAN]),
+            ),
+            (
+                "centre_temperature.lengths".to_owned(),
+                array(1, &[1.0, 0.0]),
+            ),
             ("mean_density".to_owned(), array(1, &[7.0, 8.0])),
         ]);
         let units = BTreeMap::from([("mean_density".to_owned(), "kg/m^3".to_owned())]);
@@ -83,9 +93,15 @@ mod tests {
         let labels: Vec<&str> = found.iter().map(|one| one.label.as_str()).collect();
         assert_eq!(
             labels,
-            ["mean density in kg/m³", "diameter in mm", "speed in m/s"]
+            [
+                "centre temperature",
+                "mean density in kg/m³",
+                "diameter in mm",
+                "speed in m/s"
+            ]
         );
-        assert_eq!(found[1].values, [2.0, 4.0]);
-        assert_eq!(found[2].values, [5.0, 2.0]);
+        assert!(found[0].values[0] == 300.0 && found[0].values[1].is_nan());
+        assert_eq!(found[2].values, [2.0, 4.0]);
+        assert_eq!(found[3].values, [5.0, 2.0]);
     }
 }
